@@ -1,40 +1,41 @@
 // A specular highlight in an image.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string_view>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace glint {
 
 // Why a candidate is or is not used.
 enum class HighlightStatus {
   kAccepted,
-  kWeak,            // too faint against its surroundings
-  kTinted,          // colour of paint, not of the light
-  kTooLarge,        // a saturated sky or wall, not a highlight
-  kAtBorder,        // touches the image border or the mask's
-  kOffSurface,      // its ray misses the seed
-  kStaysPut,        // bright in other views at the same surface point: paint
-  kWrongNormal,     // no light explains it at any surface point near its ray
-  kGrazing,         // incidence above the limit
-  kInconsistent,    // contradicts the neighbouring contacts in the bundle
+  kWeak,          // too faint against its surroundings
+  kTinted,        // colour of paint, not of the light
+  kTooLarge,      // a saturated sky or wall, not a highlight
+  kAtBorder,      // touches the image border or the mask's
+  kOffSurface,    // its ray misses the seed
+  kStaysPut,      // bright in other views at the same surface point: paint
+  kWrongNormal,   // no light explains it at any surface point near its ray
+  kGrazing,       // incidence above the limit
+  kInconsistent,  // contradicts the neighbouring contacts in the bundle
+  kNotALobe,      // flat or ragged like print, without the fall-off of a highlight
 };
+inline constexpr int kNumHighlightStatuses = 11;
 
-std::string_view StatusName(HighlightStatus status);   // "accepted", "stays_put", ... for reports
-std::string_view StatusReason(HighlightStatus status); // a plain sentence for people
+std::string_view StatusName(HighlightStatus status);    // "accepted", "stays_put", ... for reports
+std::string_view StatusReason(HighlightStatus status);  // a plain sentence for people
 
 struct Highlight {
-  uint32_t view = 0;                  // index into Scene::views
-  Eigen::Vector2d px;                 // sub-pixel peak, COLMAP's pixel frame
-  Eigen::Matrix2d covariance_px;      // of the peak
-  Eigen::Matrix2d moments_px;         // second central moments of the blob: its size and orientation
+  uint32_t view = 0;              // index into Scene::views
+  Eigen::Vector2d px;             // sub-pixel peak, COLMAP's pixel frame
+  Eigen::Matrix2d covariance_px;  // of the peak
+  Eigen::Matrix2d moments_px;     // second central moments of the blob: its size and orientation
   double area_px = 0;
-  double strength = 0;                // peak specular residual, 1 = sensor white
-  double saturated_fraction = 0;      // of the blob's pixels
-  int light = -1;                     // index of the assigned light, -1: none yet
+  double strength = 0;            // peak specular residual, 1 = sensor white
+  double saturated_fraction = 0;  // of the blob's pixels
+  int light = -1;                 // index of the assigned light, -1: none yet
   HighlightStatus status = HighlightStatus::kAccepted;
 };
 
