@@ -1,0 +1,27 @@
+// The peak of a highlight from its flank.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+namespace glint {
+
+struct LobeFit {
+  bool ok = false;
+  Eigen::Vector2d peak;        // pixels of the map, OpenCV's frame
+  Eigen::Matrix2d covariance;  // of the peak, pixels²
+  double amplitude = 0;        // over the body, 1 = sensor white; extrapolated where the core is saturated
+  double body = 0;
+  double profile_error = 0;  // robust residual of the unsaturated pixels, relative to the rise seen
+  double saturated_fraction = 0;
+};
+
+// Fits  body + amplitude (1 + q(x))^-2  with q a positive quadratic form about the peak: the image of a GGX lobe on a
+// smooth surface, where half-vector angle grows linearly with the distance from the peak (D ~ (1 + tan²θ/α²)^-2,
+// Walter et al. 2007). Iteratively re-weighted Levenberg-Marquardt with Cauchy weights over the pixels within an
+// ellipse somewhat larger than the blob. Pixels at or above `saturation` only say "at least that bright".
+// `map`: CV_16UC1 linear; `centroid`, `moments`: of the part above half height; `mask`: CV_8U or empty.
+LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& centroid,
+                const Eigen::Matrix2d& moments, double body, double peak_value, double saturation);
+
+}  // namespace glint
