@@ -1,1 +1,71 @@
-int main() { return 0; }
+// The program `glint`: reads the command line, runs one command, and turns what went wrong into an exit code:
+// 0 done, 2 bad input or configuration, 3 no honest result, 1 a bug, 128 + signal when asked to stop.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "pipeline/commands/command.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/terminal.h"
+
+namespace {
+
+enum ExitCode { kDone = 0, kBug = 1, kBadInput = 2, kNoResult = 3 };
+
+constexpr const char* kAbout =
+    "Glint turns specular highlights in the photographs of a COLMAP project into measurements of the surface,\n"
+    "and refines the mesh with them.";
+
+void DeclareCommands(CLI::App& app, glint::CommandLine& line) {
+  app.set_version_flag("--version", "glint " GLINT_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough(false);
+  glint::AddConfigCommand(app, line);
+}
+
+int RunAction(const glint::CommandLine& line) {
+  glint::Terminal terminal(line.quiet ? glint::Verbosity::kQuiet : glint::Verbosity::kNormal);
+  const glint::InterruptGuard interrupts;
+  const glint::ThreadLimit threads(line.threads);
+  try {
+    line.action(terminal);
+    terminal.Finish();
+    return kDone;
+  } catch (const glint::InputError& e) {
+    terminal.Error(e.what());
+    return kBadInput;
+  } catch (const glint::NoResultError& e) {
+    terminal.Error(e.what());
+    return kNoResult;
+  } catch (const glint::CancelledError&) {
+    terminal.Error("stopped on request; finished stages are kept");
+    return 128 + glint::InterruptSignal();
+  } catch (const std::bad_alloc&) {
+    terminal.Error("out of memory: choose larger voxels or smaller images");
+    return kBadInput;
+  } catch (const std::filesystem::filesystem_error& e) {
+    terminal.Error(e.what());
+    return kBadInput;
+  } catch (const std::exception& e) {
+    terminal.Error(std::string("this is a bug in Glint, please report it: ") + e.what());
+    return kBug;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kAbout, "glint");
+  glint::CommandLine line;
+  DeclareCommands(app, line);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kDone : kBadInput;
+  }
+  return RunAction(line);
+}

@@ -1,0 +1,54 @@
+#include "pipeline/config.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/config_file.h"
+#include "pipeline/option_table.h"
+
+namespace glint {
+
+void OutputOptions::Visit(OptionVisitor& v) {
+  v.Field({.name = "overlays", .help = "Write each image with its highlights drawn into highlights/."}, overlays);
+  v.Field({.name = "overlay_max_side_px",
+           .help = "Larger images are scaled down to this for their overlay.",
+           .unit = "px",
+           .min = 64,
+           .max = 65535},
+          overlay_max_side_px);
+  v.Field({.name = "memory_fraction",
+           .help = "Refuse to start when the level set would need more than this part of the memory that is free.",
+           .min = 0.01,
+           .max = 1},
+          memory_fraction);
+}
+
+void Config::Visit(OptionVisitor& v) {
+  VisitSection(v, "detect", "Highlights in a single image.", detect);
+  VisitSection(v, "gate", "Which of them agree with the surface, a light and the other views.", gate);
+  VisitSection(v, "output", "What is written, and the limits of the machine.", output);
+}
+
+Config ResolveConfig(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  Config config;
+  const OptionTable table(config);
+  ConfigProblems problems;
+  if (!file.empty()) ReadYamlFile(file, table, problems);
+  for (const std::string& setting : settings) ApplySetting(setting, table, problems);
+  for (const std::string& violation : Violations(config)) {
+    const auto origin = problems.origin.find(violation.substr(0, violation.find(" = ")));
+    problems.messages.push_back(origin == problems.origin.end() ? violation : origin->second + ": " + violation);
+  }
+  problems.ThrowIfAny();
+  return config;
+}
+
+std::string ConfigYaml(Config config, const std::string& title) { return WriteYaml(OptionTable(config), title); }
+
+std::string DefaultConfigYaml() {
+  return ConfigYaml(
+      Config(),
+      "Glint's options with their default values: `glint config` prints this file. Give a file with only "
+      "the options to change to `glint run --config FILE`, or single ones with `--set section.option=value`.");
+}
+
+}  // namespace glint

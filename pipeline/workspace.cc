@@ -1,0 +1,78 @@
+#include "pipeline/workspace.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+namespace {
+
+// The names that core/atomic_file.h gives to files it is writing: ".tmp-PID-COUNT.EXTENSION".
+bool IsTemporary(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  return stem.starts_with(".tmp-") && stem.find_first_not_of("0123456789-", 5) == std::string::npos;
+}
+
+template <class Iterator>
+void RemoveTemporaries(const fs::path& folder) {
+  std::error_code error;
+  for (Iterator it(folder, error); !error && it != Iterator(); it.increment(error)) {
+    std::error_code ignored;
+    if (it->is_regular_file(ignored) && IsTemporary(it->path())) fs::remove(it->path(), ignored);
+  }
+}
+
+}  // namespace
+
+Workspace::Workspace(fs::path root) : root_(std::move(root)) {
+  std::error_code error;
+  if (fs::exists(root_, error) && !fs::is_directory(root_, error))
+    throw InputError(root_.string(), "", "expected a folder for the output, found a file");
+  fs::create_directories(root_, error);
+  if (error) throw InputError(root_.string(), "", "the output folder cannot be made: " + error.message());
+  folder_ = ::open(root_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder_ < 0 || ::access(root_.c_str(), W_OK | X_OK) != 0) {
+    const int reason = errno;
+    if (folder_ >= 0) ::close(folder_);
+    throw InputError(root_.string(), "", fmt::format("the output folder cannot be written: {}", std::strerror(reason)));
+  }
+  // A file system that cannot lock folders (ENOTSUP, EBADF on some network shares) still serves one run at a time.
+  if (::flock(folder_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(folder_);
+    throw InputError(root_.string(), "", "another run of glint is writing here; wait for it or choose another -o");
+  }
+  // Only where a run writes: the user may have named a folder that holds other things too.
+  RemoveTemporaries<fs::directory_iterator>(root_);
+  RemoveTemporaries<fs::directory_iterator>(Stages());
+  RemoveTemporaries<fs::recursive_directory_iterator>(Overlays());
+}
+
+Workspace::~Workspace() { ::close(folder_); }
+
+void Workspace::RemoveResults() const {
+  for (const fs::path& file : {Mesh(), LevelSetFile(), Lights(), Config(), Report()}) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw InputError(file.string(), "", "cannot be replaced: " + error.message());
+  }
+}
+
+fs::path PathForImage(const fs::path& folder, const std::string& image_name, std::string_view suffix) {
+  const fs::path relative(image_name);
+  bool inside = !image_name.empty() && relative.is_relative() && relative.has_filename();
+  for (const fs::path& part : relative) inside = inside && part != "..";
+  if (!inside) throw InputError(image_name, "", "an image name must be a relative path that stays in its folder");
+  fs::path path = folder / relative;
+  path += std::string(suffix);
+  return path;
+}
+
+}  // namespace glint
