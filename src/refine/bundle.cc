@@ -82,6 +82,7 @@ class Solver {
       if (!summary.usable) break;
       if (round + 1 < options_.rounds) summary.num_rejected += Reject();
     }
+    if (contacts_.size() < 3) chords_.clear(), point_chords_.clear();
     Finish(summary);
     std::vector<double> motion;
     // Contacts rejected on the way do not count; `start` is matched by walking the survivors in order.

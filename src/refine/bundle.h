@@ -25,7 +25,7 @@ struct BundleOptions {
   double max_normal_angle_deg = 35;
   double prior_sigma_rel = 0.03;
   double point_normal_sigma_deg = 5;
-  double reject_sigmas = 5;
+  double reject_sigmas = 3;
   int rounds = 4;
   void Visit(OptionVisitor& v);
 };

@@ -1,0 +1,192 @@
+#include "refine/level_set_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/parallel.h"
+
+namespace glint {
+
+void LevelSetOptions::Visit(OptionVisitor& v) {
+  v.Field({.name = "smoothness", .help = "weight of the squared Hessian over the surface", .min = 1e-6, .max = 1e6},
+          smoothness);
+  v.Field({.name = "normal_weight",
+           .help = "weight that keeps the field a distance along its normals",
+           .min = 0,
+           .max = 1e6},
+          normal_weight);
+  v.Field({.name = "seed_sigma_rel",
+           .help = "how far the seed is trusted where no highlight and no point says otherwise",
+           .unit = "fraction of the diagonal",
+           .min = 1e-5,
+           .max = 1},
+          seed_sigma_rel);
+  v.Field({.name = "seed_length_rel",
+           .help = "distance over which the seed's errors are alike",
+           .unit = "fraction of the diagonal",
+           .min = 1e-3,
+           .max = 1},
+          seed_length_rel);
+  v.Field({.name = "point_weight", .help = "weight of the sparse points; 0: not used", .min = 0, .max = 1e4},
+          point_weight);
+  v.Field({.name = "highlight_weight", .help = "weight of the highlights; 0: not used", .min = 0, .max = 1e4},
+          highlight_weight);
+  v.Field({.name = "reweightings", .help = "solves with weights of outliers lowered", .min = 1, .max = 20},
+          reweightings);
+  v.Field({.name = "max_iterations", .help = "of the linear solver", .min = 1, .max = 100000}, max_iterations);
+  v.Field({.name = "tolerance", .help = "relative residual at which the linear solver stops", .min = 1e-12, .max = 0.5},
+          tolerance);
+}
+
+namespace {
+
+// Cauchy: weight of a squared residual in standard deviations.
+double RobustWeight(double squared) { return 1 / (1 + squared / 4); }
+
+// Rows with the base weights, and which of them belong together when outliers are weighted down.
+struct Constraints {
+  BandRows rows;
+  std::vector<double> base_weight;
+  std::vector<std::pair<size_t, size_t>> groups;
+
+  void EndGroup(size_t first) {
+    for (size_t r = first; r < rows.size(); ++r) base_weight.push_back(rows.weight[r]);
+    groups.emplace_back(first, rows.size());
+  }
+};
+
+bool AddValueRow(const Band& band, const Eigen::Vector3d& x, double weight, BandRows& rows) {
+  std::array<int32_t, 8> voxels;
+  std::array<double, 8> weights;
+  if (!band.Trilinear(x, voxels, weights)) return false;
+  for (int k = 0; k < 8; ++k) rows.Push(voxels[k], weights[k]);
+  rows.Close(0, weight);
+  return true;
+}
+
+// Central differences at the eight voxels around x, blended: second order in h, unlike the trilinear derivative.
+bool AddGradientRows(const Band& band, const Eigen::Vector3d& x, const Eigen::Vector3d& normal, double weight,
+                     BandRows& rows) {
+  std::array<int32_t, 8> voxels;
+  std::array<double, 8> weights;
+  if (!band.Trilinear(x, voxels, weights)) return false;
+  for (int32_t v : voxels)
+    for (int axis = 0; axis < 3; ++axis)
+      if (band.Neighbor(v, axis, 0) == Band::kNone || band.Neighbor(v, axis, 1) == Band::kNone) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < 8; ++k) {
+      const double c = weights[k] / (2 * band.voxel_size());
+      rows.Push(band.Neighbor(voxels[k], axis, 1), c);
+      rows.Push(band.Neighbor(voxels[k], axis, 0), -c);
+    }
+    rows.Close(normal[axis], weight);
+  }
+  return true;
+}
+
+Constraints BuildConstraints(const Band& band, const std::vector<OrientedPoint>& contacts,
+                             const std::vector<SurfacePoint>& points, const LevelSetOptions& options,
+                             StepSummary& summary) {
+  Constraints c;
+  if (options.highlight_weight > 0)
+    for (const OrientedPoint& contact : contacts) {
+      size_t first = c.rows.size();
+      const double w = options.highlight_weight;
+      if (!AddGradientRows(band, contact.position, contact.normal, w / std::pow(contact.sigma_normal, 2), c.rows)) {
+        ++summary.contacts_off_band;
+        continue;
+      }
+      c.EndGroup(first);
+      first = c.rows.size();
+      AddValueRow(band, contact.position, w / std::pow(contact.sigma_position, 2), c.rows);
+      c.EndGroup(first);
+    }
+  if (options.point_weight > 0)
+    for (const SurfacePoint& point : points) {
+      const size_t first = c.rows.size();
+      if (AddValueRow(band, point.position, options.point_weight / std::pow(point.sigma, 2), c.rows))
+        c.EndGroup(first);
+      else
+        ++summary.points_off_band;
+    }
+  return c;
+}
+
+// m of DESIGN 3.4: near 1 where no contact reaches, near 0 where one does.
+std::vector<float> SeedTrust(const Band& band, const std::vector<OrientedPoint>& contacts) {
+  std::vector<float> trust(band.size(), 1);
+  ParallelFor(band.size(), 1 << 12, [&](size_t i) {
+    const Eigen::Vector3d x = band.Position(i);
+    double explained = 0;
+    for (const OrientedPoint& contact : contacts) {
+      const double ratio2 = (x - contact.position).squaredNorm() / (contact.reach * contact.reach);
+      if (ratio2 < 9) explained = std::max(explained, std::exp(-0.5 * ratio2 * ratio2));
+    }
+    trust[i] = static_cast<float>(1 - explained);
+  });
+  return trust;
+}
+
+BandWeights MakeWeights(const Band& band, const LevelSet& surface, const LevelSet& seed, double surface_area,
+                        const std::vector<OrientedPoint>& contacts, const LevelSetOptions& options) {
+  const double h = band.voxel_size();
+  const double area = surface_area / static_cast<double>(band.size());  // a voxel's share of the surface integral
+  BandWeights weights;
+  weights.smoothness = options.smoothness * area / std::pow(h, 4);
+  weights.normal = options.normal_weight * area / (h * h);
+  weights.n.resize(band.size());
+  weights.pull.resize(band.size());
+  weights.pull_target.resize(band.size());
+  static const std::vector<OrientedPoint> kNone;
+  const std::vector<float> trust = SeedTrust(band, options.highlight_weight > 0 ? contacts : kNone);
+  const double mu = 1 / std::pow(options.seed_sigma_rel * options.seed_length_rel, 2);
+  const double background = seed.half_width_voxels() * seed.voxel_size();
+  ParallelFor(band.size(), 1 << 12, [&](size_t i) {
+    const Eigen::Vector3d x = band.Position(i);
+    const Eigen::Vector3d g = surface.Gradient(x);
+    const double length = g.norm();
+    weights.n[i] = (length > 1e-12 ? Eigen::Vector3d(g / length) : Eigen::Vector3d::Zero()).cast<float>();
+    const double value = seed.Value(x);
+    const bool known = std::abs(value) < 0.98 * background;
+    weights.pull[i] = known ? static_cast<float>(mu * area * trust[i]) : 0;
+    weights.pull_target[i] = static_cast<float>(value);
+  });
+  return weights;
+}
+
+}  // namespace
+
+LevelSet VariationalStep(const LevelSet& surface, const LevelSet& seed, double surface_area,
+                         const std::vector<OrientedPoint>& contacts, const std::vector<SurfacePoint>& points,
+                         const LevelSetOptions& options, StepSummary* summary) {
+  StepSummary local;
+  StepSummary& report = summary ? *summary : local;
+  report = {};
+  const Band band(surface);
+  report.num_voxels = band.size();
+  BandSystem system(band, MakeWeights(band, surface, seed, surface_area, contacts, options));
+  Constraints constraints = BuildConstraints(band, contacts, points, options, report);
+  std::vector<double> phi(band.phi().begin(), band.phi().end());
+  for (int k = 0; k < options.reweightings; ++k) {
+    for (const auto& [first, last] : constraints.groups) {
+      double squared = 0;
+      for (size_t r = first; r < last; ++r) {
+        const double residual = constraints.rows.Dot(r, phi) - constraints.rows.target[r];
+        squared += constraints.base_weight[r] * residual * residual;
+      }
+      // The first solve trusts everything: the seed is no judge of what is an outlier.
+      const double weight = k == 0 ? 1 : RobustWeight(squared);
+      for (size_t r = first; r < last; ++r) constraints.rows.weight[r] = weight * constraints.base_weight[r];
+    }
+    system.SetRows(constraints.rows);
+    const SolveReport solve = system.Solve(options.max_iterations, options.tolerance, phi);
+    if (k == 0) report.energy_before = solve.initial_energy;
+    report.energy_after = solve.final_energy;
+    report.solver_iterations += solve.iterations;
+    report.relative_residual = solve.relative_residual;
+  }
+  return band.WithValues(std::vector<float>(phi.begin(), phi.end()));
+}
+
+}  // namespace glint

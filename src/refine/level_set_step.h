@@ -1,0 +1,55 @@
+// One step of the level set for fixed contacts: the minimum over the band of
+//   α Σ ρ(‖∇φ(xᵢ) − nᵢ‖²/σₙ²) + Σ ρ(φ(xᵢ)²/σᵢ²) + Σ ρ(φ(pⱼ)²/σⱼ²) + γ ∫‖Hφ‖² + η ∫(∂φ/∂n − 1)² + μ ∫ m (φ − φ₀)²
+// (DESIGN 3.4, "variational"). Integrals are over the surface, so that weights do not depend on the voxel size.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/options.h"
+#include "refine/band_system.h"
+#include "refine/bundle.h"
+#include "sdf/level_set.h"
+
+namespace glint {
+
+struct LevelSetOptions {
+  double smoothness = 1;
+  double normal_weight = 10;
+  double seed_sigma_rel = 0.01;
+  double seed_length_rel = 0.06;
+  double point_weight = 1;
+  double highlight_weight = 1;
+  int reweightings = 2;
+  int max_iterations = 300;
+  double tolerance = 1e-3;
+  void Visit(OptionVisitor& v);
+};
+
+// A place where the surface's position and normal are known. Lengths in units of the object's diagonal.
+struct OrientedPoint {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;
+  double sigma_position;
+  double sigma_normal;  // radians
+  double reach;         // radius within which it explains the surface, so that the seed need not be kept
+};
+
+struct StepSummary {
+  double energy_before = 0;
+  double energy_after = 0;
+  int solver_iterations = 0;
+  double relative_residual = 0;
+  size_t num_voxels = 0;
+  int contacts_off_band = 0;
+  int points_off_band = 0;
+};
+
+// `surface`: the current surface as a signed distance field; `seed`: the field to stay near where nothing is known
+// (its band should be the wider one; off it there is no pull). All in units of the object's diagonal.
+LevelSet VariationalStep(const LevelSet& surface, const LevelSet& seed, double surface_area,
+                         const std::vector<OrientedPoint>& contacts, const std::vector<SurfacePoint>& points,
+                         const LevelSetOptions& options, StepSummary* summary);
+
+}  // namespace glint

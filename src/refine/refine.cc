@@ -1,0 +1,240 @@
+#include "refine/refine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/check.h"
+#include "geometry/ray_caster.h"
+#include "refine/confidence.h"
+#include "refine/normalized.h"
+#include "sdf/extract_mesh.h"
+#include "sdf/mesh_to_level_set.h"
+
+namespace glint {
+
+void RefineOptions::Visit(OptionVisitor& v) {
+  v.Field({.name = "voxel_rel",
+           .help = "voxel size of the finest level",
+           .unit = "fraction of the diagonal",
+           .min = 1e-4,
+           .max = 0.1},
+          voxel_rel);
+  v.Field({.name = "levels", .help = "coarse to fine; each doubles the resolution", .min = 1, .max = 8}, levels);
+  v.Field({.name = "half_width_voxels", .help = "of the narrow band", .unit = "voxels", .min = 3, .max = 20},
+          half_width_voxels);
+  v.Field({.name = "max_iterations", .help = "of bundle and level set, a level", .min = 1, .max = 100}, max_iterations);
+  v.Field({.name = "min_motion_voxels",
+           .help = "a level is done when the contacts move less (median)",
+           .unit = "voxels",
+           .min = 0,
+           .max = 10},
+          min_motion_voxels);
+  v.Field({.name = "min_point_sigma_rel",
+           .help = "least standard deviation of a sparse point across the surface",
+           .unit = "fraction of the diagonal",
+           .min = 1e-6,
+           .max = 0.1},
+          min_point_sigma_rel);
+  v.Field({.name = "use_highlights", .help = "false: points and smoothness alone, to see what the highlights add"},
+          use_highlights);
+  v.Field({.name = "lights",
+           .help = "fixed: as given; solve: refined jointly; auto: those with a standard deviation are solved",
+           .choices = {"auto", "fixed", "solve"}},
+          lights);
+  VisitSection(v, "contacts", "highlights as oriented rays", contacts);
+  VisitSection(v, "bundle", "the specular bundle", bundle);
+  VisitSection(v, "level_set", "the energy of the level set", level_set);
+}
+
+namespace {
+
+constexpr double kRadians = M_PI / 180;
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// All of the state between iterations, in units of the object's diagonal.
+class Refiner {
+ public:
+  Refiner(const RefineInput& input, const RefineOptions& options, Progress& progress)
+      : input_(input), options_(options), progress_(progress), frame_(UnitFrame::Of(input.seed)) {
+    seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
+    surface_ = seed_;
+    for (const Light& light : input.lights) {
+      lights_.push_back(frame_.FromWorld(light));
+      solve_lights_.push_back(options.lights == "solve" || (options.lights == "auto" && light.sigma > 0));
+    }
+    if (options.use_highlights)
+      for (const Contact& contact : MakeContacts(input.scene, input.highlights, options.contacts))
+        contacts_.push_back(frame_.FromWorld(contact));
+    MakePoints();
+  }
+
+  RefineResult Run() {
+    RefineResult result;
+    summary_.num_highlights = static_cast<int>(input_.highlights.size());
+    summary_.num_points = static_cast<int>(points_.size());
+    progress_.Begin("refine", static_cast<size_t>(options_.levels * options_.max_iterations));
+    for (int level = 0; level < options_.levels; ++level) {
+      const double voxel = options_.voxel_rel * std::pow(2.0, options_.levels - 1 - level);
+      const bool finished = RunLevel(voxel);
+      if (level + 1 == options_.levels) summary_.converged = finished;
+    }
+    Finish(result);
+    return result;
+  }
+
+ private:
+  void MakePoints();
+  bool RunLevel(double voxel);
+  double UpdateContacts(IterationSummary& iteration);
+  void UpdatePoints(const LevelSet& field);
+  std::vector<OrientedPoint> OrientedPoints() const;
+  void Finish(RefineResult& result);
+
+  const RefineInput& input_;
+  const RefineOptions& options_;
+  Progress& progress_;
+  const UnitFrame frame_;
+  TriangleMesh seed_, surface_;
+  std::vector<Light> lights_;
+  std::vector<bool> solve_lights_;
+  std::vector<Contact> contacts_;
+  std::vector<SurfacePoint> points_;
+  RefineSummary summary_;
+};
+
+// A point's standard deviation across the surface, from its reprojection error and its distance to the cameras.
+void Refiner::MakePoints() {
+  const Scene& scene = input_.scene;
+  if (input_.point_used.empty()) return;
+  GLINT_CHECK_EQ(input_.point_used.size(), scene.points.size());
+  for (size_t i = 0; i < scene.points.size(); ++i) {
+    if (!input_.point_used[i]) continue;
+    const ScenePoint& point = scene.points[i];
+    std::vector<double> px_world;
+    for (const Observation& o : point.observations) {
+      const View& view = scene.views[o.view];
+      px_world.push_back((point.position - view.Center()).norm() / MeanFocalLength(view.camera));
+    }
+    SurfacePoint p;
+    p.position = frame_.FromWorld(point.position);
+    // Depth is worse than the image plane, by about the inverse of the angle between the rays.
+    const double error_px = std::max(0.3, point.error_px);
+    p.sigma = std::max(options_.min_point_sigma_rel, 3 * error_px * Median(px_world) * frame_.scale);
+    points_.push_back(p);
+  }
+}
+
+// Depths at which the rays meet the surface; returns how far the contacts moved (median).
+double Refiner::UpdateContacts(IterationSummary& iteration) {
+  const RayCaster caster(surface_);
+  for (Contact& contact : contacts_) {
+    contact.accepted = false;
+    const auto hit = caster.Intersect(contact.origin, contact.direction);
+    if (!hit) continue;
+    contact.prior_depth = hit->t;
+    if (contact.depth == 0) contact.depth = hit->t;
+    contact.accepted = Incidence(contact, lights_[contact.light]) < options_.contacts.max_incidence_deg * kRadians;
+    iteration.contacts_on_surface += contact.accepted;
+  }
+  std::vector<double> before, motion;
+  for (const Contact& contact : contacts_) before.push_back(contact.depth);
+  iteration.bundle = SolveBundle(points_, 1.0, solve_lights_, options_.bundle, contacts_, lights_);
+  for (size_t i = 0; i < contacts_.size(); ++i)
+    if (contacts_[i].accepted) motion.push_back(std::abs(contacts_[i].depth - before[i]));
+  return Median(motion);
+}
+
+void Refiner::UpdatePoints(const LevelSet& field) {
+  for (SurfacePoint& p : points_) {
+    const Eigen::Vector3d g = field.Gradient(p.position);
+    // Off the band there is no normal; a zero one ties the point to no contact.
+    p.normal = g.norm() > 0.5 ? Eigen::Vector3d(g.normalized()) : Eigen::Vector3d::Zero();
+  }
+}
+
+std::vector<OrientedPoint> Refiner::OrientedPoints() const {
+  std::vector<OrientedPoint> oriented;
+  for (const Contact& contact : contacts_) {
+    if (!contact.accepted) continue;
+    OrientedPoint p;
+    p.position = contact.Position();
+    p.normal = ContactNormal(contact, lights_[contact.light]);
+    const double facing = std::abs(contact.direction.dot(p.normal));
+    p.sigma_position = std::clamp(contact.sigma_depth * facing, 2e-4, 0.03);
+    p.sigma_normal = contact.sigma_normal;
+    oriented.push_back(p);
+  }
+  // A contact explains the surface as far as the next few contacts are.
+  constexpr size_t kNear = 6;
+  for (OrientedPoint& p : oriented) {
+    std::vector<double> distances;
+    for (const OrientedPoint& q : oriented) distances.push_back((q.position - p.position).norm());
+    const size_t k = std::min(kNear, distances.size() - 1);
+    std::nth_element(distances.begin(), distances.begin() + k, distances.end());
+    p.reach = std::clamp(distances[k], 0.02, 0.12);
+  }
+  return oriented;
+}
+
+bool Refiner::RunLevel(double voxel) {
+  SdfOptions sdf;
+  sdf.half_width_voxels = std::max(8.0, 2 * options_.half_width_voxels);
+  const LevelSet seed_field = MeshToLevelSet(seed_, voxel, sdf);
+  sdf.half_width_voxels = options_.half_width_voxels;
+  for (int k = 0; k < options_.max_iterations; ++k) {
+    progress_.ThrowIfCancelled();
+    const auto start = std::chrono::steady_clock::now();
+    IterationSummary iteration;
+    iteration.voxel_rel = voxel;
+    const LevelSet field = MeshToLevelSet(surface_, voxel, sdf);
+    UpdatePoints(field);
+    iteration.contact_motion_voxels = UpdateContacts(iteration) / voxel;
+    const LevelSet stepped = VariationalStep(field, seed_field, SurfaceArea(surface_), OrientedPoints(), points_,
+                                             options_.level_set, &iteration.step);
+    surface_ = ExtractMesh(stepped);
+    iteration.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    summary_.iterations.push_back(iteration);
+    progress_.Advance();
+    if (k > 0 && iteration.contact_motion_voxels < options_.min_motion_voxels) return true;
+  }
+  return false;
+}
+
+void Refiner::Finish(RefineResult& result) {
+  AddConfidence(OrientedPoints(), points_, options_.level_set.seed_sigma_rel, surface_);
+  result.mesh = frame_.ToWorld(surface_);
+  SdfOptions sdf;
+  sdf.half_width_voxels = options_.half_width_voxels;
+  result.level_set = MeshToLevelSet(result.mesh, options_.voxel_rel / frame_.scale, sdf);
+  result.highlights = input_.highlights;
+  for (const Contact& contact : contacts_) {
+    if (contact.accepted)
+      result.contacts.push_back(frame_.ToWorld(contact));
+    else
+      result.highlights[contact.highlight].status = HighlightStatus::kInconsistent;
+  }
+  for (size_t k = 0; k < lights_.size(); ++k) result.lights.push_back(frame_.ToWorld(lights_[k]));
+  summary_.num_contacts = static_cast<int>(result.contacts.size());
+  if (!summary_.converged)
+    summary_.warnings.push_back(
+        fmt::format("the contacts still moved after {} iterations at the finest level", options_.max_iterations));
+  result.summary = summary_;
+}
+
+}  // namespace
+
+RefineResult Refine(const RefineInput& input, const RefineOptions& options, Progress& progress) {
+  GLINT_CHECK(!input.seed.faces.empty());
+  return Refiner(input, options, progress).Run();
+}
+
+}  // namespace glint

@@ -1,0 +1,76 @@
+// From a seed mesh and highlights to the surface that agrees with them: specular bundle and level set in turn, coarse
+// to fine, until the contacts stop moving (DESIGN 3.3, 3.4).
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "colmap/scene.h"
+#include "constraints/contact.h"
+#include "core/options.h"
+#include "core/progress.h"
+#include "geometry/triangle_mesh.h"
+#include "highlights/highlight.h"
+#include "light/light.h"
+#include "refine/bundle.h"
+#include "refine/level_set_step.h"
+#include "sdf/level_set.h"
+
+namespace glint {
+
+struct RefineOptions {
+  double voxel_rel = 1.0 / 256;
+  int levels = 3;
+  double half_width_voxels = 4;
+  int max_iterations = 4;
+  double min_motion_voxels = 0.05;
+  double min_point_sigma_rel = 0.001;
+  bool use_highlights = true;
+  std::string lights = "auto";  // "fixed", "solve", "auto": solve those with a standard deviation
+  ContactOptions contacts;
+  BundleOptions bundle;
+  LevelSetOptions level_set;
+  void Visit(OptionVisitor& v);
+};
+
+// All in world units. The seed must be closed and oriented outward.
+struct RefineInput {
+  const Scene& scene;
+  const TriangleMesh& seed;
+  std::vector<uint8_t> point_used;  // a scene point: lies on the object's surface; empty: none does
+  std::vector<Highlight> highlights;
+  std::vector<Light> lights;
+};
+
+struct IterationSummary {
+  double voxel_rel = 0;
+  int contacts_on_surface = 0;
+  double contact_motion_voxels = 0;  // median, since the last iteration
+  BundleSummary bundle;
+  StepSummary step;
+  double seconds = 0;
+};
+
+struct RefineSummary {
+  std::vector<IterationSummary> iterations;
+  int num_highlights = 0;
+  int num_contacts = 0;
+  int num_points = 0;
+  bool converged = false;
+  std::vector<std::string> warnings;
+};
+
+struct RefineResult {
+  LevelSet level_set;  // world units
+  TriangleMesh mesh;   // with normals, confidence, sigma_position_rel and sigma_normal_deg
+  std::vector<Light> lights;
+  std::vector<Highlight> highlights;
+  std::vector<Contact> contacts;  // world units; accepted ones only
+  RefineSummary summary;
+};
+
+// Throws InputError where the voxel size would need more memory than there is.
+RefineResult Refine(const RefineInput& input, const RefineOptions& options, Progress& progress = Progress::Silent());
+
+}  // namespace glint

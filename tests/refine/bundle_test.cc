@@ -1,0 +1,172 @@
+#include "refine/bundle.h"
+
+#include <algorithm>
+#include <random>
+
+#include <ceres/gradient_checker.h>
+#include <ceres/ceres.h>
+#include <gmock/gmock.h>
+
+#include "refine/chord_residual.h"
+#include "refine/neighbors.h"
+#include "tests/support/ellipsoid_scene.h"
+
+namespace glint {
+namespace {
+
+using testing::DistantLight;
+using testing::Ellipsoid;
+using testing::MakeEllipsoidContacts;
+
+double MedianDepthError(const std::vector<Contact>& contacts, const std::vector<Contact>& truth) {
+  std::vector<double> errors;
+  for (size_t i = 0; i < contacts.size(); ++i)
+    if (contacts[i].accepted) errors.push_back(std::abs(contacts[i].depth - truth[i].depth));
+  std::sort(errors.begin(), errors.end());
+  return errors[errors.size() / 2];
+}
+
+TEST(ChordResidual, IsZeroOnASphere) {
+  const Ellipsoid sphere{{1, 1, 1}};
+  const std::vector<Light> lights = {DistantLight(1, 0, 1)};
+  const auto scene = MakeEllipsoidContacts(sphere, lights, 12, 0);
+  for (const Contact& a : scene.contacts)
+    for (const Contact& b : scene.contacts) {
+      if (&a == &b) continue;
+      const ChordResidual residual{{a, lights[0]}, {b, lights[0]}, 1};
+      double r;
+      residual(&a.depth, &b.depth, lights[0].vector.data(), &r);
+      EXPECT_NEAR(r, 0, 1e-12);
+    }
+}
+
+TEST(ChordResidual, JacobiansAgreeWithFiniteDifferences) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (LightType type : {LightType::kDistant, LightType::kPoint})
+    for (LightFrame frame : {LightFrame::kWorld, LightFrame::kCamera}) {
+      Light light = DistantLight(0.3, 0.4, 0.9);
+      light.type = type;
+      light.frame = frame;
+      if (type == LightType::kPoint) light.vector *= 3;
+      auto scene = MakeEllipsoidContacts(Ellipsoid(), {DistantLight(0.3, 0.4, 0.9)}, 6, 1);
+      Contact &a = scene.contacts[0], &b = scene.contacts[3];
+      const ceres::AutoDiffCostFunction<ChordResidual, 1, 1, 1, 3> cost(
+          new ChordResidual{{a, light}, {b, light}, 100});
+      const ceres::AutoDiffCostFunction<PointChordResidual, 1, 1, 3> point_cost(
+          new PointChordResidual{{a, light}, scene.points[0].position, scene.points[0].normal, 100});
+      Eigen::Vector3d vector = light.vector;
+      const double* parameters[] = {&a.depth, &b.depth, vector.data()};
+      const double* point_parameters[] = {&a.depth, vector.data()};
+      ceres::NumericDiffOptions options;
+      ceres::GradientChecker::ProbeResults results;
+      EXPECT_TRUE(ceres::GradientChecker(&cost, static_cast<std::vector<const ceres::Manifold*>*>(nullptr), options)
+                      .Probe(parameters, 1e-5, &results))
+          << results.error_log;
+      EXPECT_TRUE(ceres::GradientChecker(&point_cost, static_cast<std::vector<const ceres::Manifold*>*>(nullptr),
+                                         options)
+                      .Probe(point_parameters, 1e-5, &results))
+          << results.error_log;
+    }
+}
+
+TEST(SectorNeighbors, SpreadOverTheTangentPlaneAndNeverThemselves) {
+  std::vector<Eigen::Vector3d> positions, normals;
+  for (int x = -5; x <= 5; ++x)
+    for (int y = -5; y <= 5; ++y) {
+      positions.emplace_back(x, y, 0.0);
+      normals.emplace_back(0, 0, 1);
+    }
+  NeighborOptions options;
+  options.count = 6;
+  const auto neighbors = SectorNeighbors(positions, normals, positions, normals, options);
+  const int center = 60;
+  EXPECT_GE(neighbors[center].size(), 4u);
+  EXPECT_THAT(neighbors[center], ::testing::Not(::testing::Contains(center)));
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int j : neighbors[center]) sum += positions[j];
+  EXPECT_LE(sum.norm(), 2);
+}
+
+TEST(SolveBundle, RecoversDepthsFromASeedThatIsOff) {
+  const Ellipsoid shape;
+  std::vector<Light> lights = {DistantLight(1, 0.2, 1), DistantLight(-0.8, 0.5, 1)};
+  const auto truth = MakeEllipsoidContacts(shape, lights, 40, 150);
+  std::vector<Contact> contacts = truth.contacts;
+  for (Contact& c : contacts) c.depth = c.prior_depth = c.depth + 0.1;
+  const BundleSummary summary =
+      SolveBundle(truth.points, shape.Diagonal(), {false, false}, BundleOptions(), contacts, lights);
+  EXPECT_TRUE(summary.usable);
+  EXPECT_LT(summary.final_cost, summary.initial_cost);
+  EXPECT_LT(MedianDepthError(contacts, truth.contacts), 0.002);
+  EXPECT_EQ(summary.num_rejected, 0);
+}
+
+TEST(SolveBundle, FindsAWrongLight) {
+  const Ellipsoid shape;
+  const std::vector<Light> true_lights = {DistantLight(1, 0.2, 1), DistantLight(-0.8, 0.5, 1)};
+  const auto truth = MakeEllipsoidContacts(shape, true_lights, 40, 150);
+  std::vector<Contact> contacts = truth.contacts;
+  std::vector<Light> lights = {DistantLight(1.2, 0.1, 0.9), DistantLight(-0.7, 0.6, 1.1)};
+  for (Contact& c : contacts) c.depth = c.prior_depth = c.depth + 0.05;
+  const BundleSummary summary =
+      SolveBundle(truth.points, shape.Diagonal(), {true, true}, BundleOptions(), contacts, lights);
+  for (size_t k = 0; k < lights.size(); ++k) {
+    EXPECT_NEAR(lights[k].vector.norm(), 1, 1e-12);
+    const double error_deg = std::acos(lights[k].vector.dot(true_lights[k].vector)) * 180 / M_PI;
+    EXPECT_LT(error_deg, 1.0);
+    EXPECT_GT(summary.lights[k].sigma, 0);
+    EXPECT_LT(error_deg, 4 * summary.lights[k].sigma + 0.2);
+  }
+}
+
+TEST(SolveBundle, RejectsWhatContradictsItsNeighbours) {
+  const Ellipsoid shape;
+  std::vector<Light> lights = {DistantLight(1, 0.2, 1)};
+  const auto truth = MakeEllipsoidContacts(shape, lights, 40, 150);
+  std::vector<Contact> contacts = truth.contacts;
+  // A reflection of something else: its ray is right, its normal is off by 12 degrees.
+  const Light other = DistantLight(1, 0.75, 0.8);
+  lights.push_back(other);
+  contacts[5].light = 1;
+  SolveBundle(truth.points, shape.Diagonal(), {false, false}, BundleOptions(), contacts, lights);
+  EXPECT_FALSE(contacts[5].accepted);
+  EXPECT_GE(std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.accepted; }),
+            static_cast<long>(contacts.size()) - 2);
+}
+
+TEST(SolveBundle, ScalesWithTheScene) {
+  const Ellipsoid shape;
+  std::vector<Light> lights = {DistantLight(1, 0.2, 1)};
+  const auto truth = MakeEllipsoidContacts(shape, lights, 30, 100);
+  const auto solve = [&](double scale) {
+    std::vector<Contact> contacts = truth.contacts;
+    std::vector<SurfacePoint> points = truth.points;
+    for (Contact& c : contacts) {
+      c.origin *= scale;
+      c.cam_from_world.translation *= scale;
+      c.depth = c.prior_depth = scale * (c.depth + 0.1);
+    }
+    for (SurfacePoint& p : points) {
+      p.position *= scale;
+      p.sigma *= scale;
+    }
+    std::vector<Light> copy = lights;
+    SolveBundle(points, scale * shape.Diagonal(), {false}, BundleOptions(), contacts, copy);
+    std::vector<double> depths;
+    for (const Contact& c : contacts) depths.push_back(c.depth / scale);
+    return depths;
+  };
+  EXPECT_THAT(solve(1000), ::testing::Pointwise(::testing::DoubleNear(1e-4), solve(1)));
+}
+
+TEST(SolveBundle, NoContactsAndTwoContactsAreNoError) {
+  std::vector<Light> lights = {DistantLight(0, 0, 1)};
+  std::vector<Contact> none;
+  EXPECT_EQ(SolveBundle({}, 1, {false}, BundleOptions(), none, lights).num_contacts, 0);
+  auto two = MakeEllipsoidContacts(Ellipsoid(), lights, 2, 0).contacts;
+  EXPECT_EQ(SolveBundle({}, 1, {false}, BundleOptions(), two, lights).num_chords, 0);
+}
+
+}  // namespace
+}  // namespace glint
