@@ -1,13 +1,12 @@
 // COLMAP's camera models: pixel <-> bearing ray.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace glint {
 
@@ -24,7 +23,13 @@ enum class CameraModel : int {
   kSimpleRadialFisheye = 8,
   kRadialFisheye = 9,
   kThinPrismFisheye = 10,
-  // Ids 11 to 17 follow COLMAP 4.1 (see camera.cc).
+  kRadTanThinPrismFisheye = 11,
+  kSimpleDivision = 12,
+  kDivision = 13,
+  kSimpleFisheye = 14,
+  kFisheye = 15,
+  kEucm = 16,
+  kEquirectangular = 17,
 };
 
 // Parameters in COLMAP's order. Pixels in COLMAP's frame: the centre of the first pixel is (0.5, 0.5).
@@ -41,9 +46,16 @@ struct Camera {
 std::optional<std::string_view> CameraModelName(int model_id);
 std::optional<CameraModel> CameraModelFromName(std::string_view name);
 std::optional<size_t> CameraModelNumParams(int model_id);
+// The parameters' names in order, as COLMAP documents them: "f, cx, cy, k".
+std::optional<std::string_view> CameraModelParamNames(int model_id);
+
+// Why the camera cannot be used (unknown model, wrong number of parameters, a value that is not finite, a focal
+// length that is not positive, no size, parameters outside the model's domain); nullopt if it is sound.
+std::optional<std::string> CameraProblem(const Camera& camera);
 
 // Pixel of a point in the camera's frame; nullopt where the model cannot see it (behind a perspective camera,
-// beyond the monotonic range of a distortion).
+// beyond the monotonic range of a distortion). Agrees with COLMAP wherever COLMAP projects in front of the camera;
+// the fisheye, division and EUCM models go on behind it as far as their formula is one to one.
 std::optional<Eigen::Vector2d> ProjectToPixel(const Camera& camera, const Eigen::Vector3d& x_in_cam);
 
 // Unit bearing ray of a pixel in the camera's frame; nullopt where the distortion cannot be inverted.

@@ -1,14 +1,13 @@
 // A COLMAP reconstruction as its files say it, and reading and writing those files.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "colmap/camera.h"
 #include "geometry/rigid.h"
@@ -18,10 +17,11 @@ namespace glint {
 inline constexpr uint64_t kInvalidPoint3DId = ~uint64_t{0};
 
 struct Point2D {
-  Eigen::Vector2d px;  // COLMAP's pixel frame
+  Eigen::Matrix<double, 2, 1, Eigen::DontAlign> px;  // COLMAP's pixel frame; packed, a model may hold 10⁸ of them
   uint64_t point3d_id = kInvalidPoint3DId;
 };
 
+// `points2d` all at (0, 0) mean that a program dropped them: the tracks hold, the pixels do not (MakeScene projects).
 struct Image {
   uint32_t id = 0;
   std::string name;  // path relative to the image folder, '/' separated, UTF-8
@@ -51,8 +51,11 @@ struct Model {
   std::vector<std::string> warnings;  // what reading repaired or left out, with file and record
 };
 
-// Reads a model folder, binary (cameras.bin, ...) or text (cameras.txt, ...), COLMAP 3.x or 4.x.
-// Throws InputError naming file and record.
+// Reads a model folder, binary (cameras.bin, ...) or text (cameras.txt, ...), COLMAP 3.x or 4.x. Where 4.x's rigs
+// and frames lie beside them, the poses are theirs. Throws InputError naming file and record for what cannot be used:
+// a cut file, an unknown camera model or camera id, duplicate ids or names, poses or points that are not finite, names
+// that leave the image folder, no image at all. Repairs, with a warning: quaternions not of unit length, tracks and 2D
+// points that do not refer to each other (left out). An empty point cloud is allowed, with a warning.
 Model ReadModel(const std::filesystem::path& folder);
 
 enum class ModelFormat { kBinary, kText };

@@ -9,9 +9,9 @@ namespace glint {
 
 struct ProjectPaths {
   std::filesystem::path root;
-  std::filesystem::path model;   // folder with cameras.*, images.*, points3D.*
-  std::filesystem::path images;  // folder that image names are relative to; empty: none found
-  std::filesystem::path masks;   // folder with <image name>.png (COLMAP: 0 is masked out); empty: none found
+  std::filesystem::path model;     // folder with cameras.*, images.*, points3D.*
+  std::filesystem::path images;    // folder that image names are relative to; empty: none found
+  std::filesystem::path masks;     // folder with <image name>.png (COLMAP: 0 is masked out); empty: none found
   std::vector<std::string> notes;  // choices made, for example which of several sub-models was taken
 };
 

@@ -1,12 +1,11 @@
 // What the stages need of a COLMAP model: views and points, densely indexed.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "colmap/camera.h"
 #include "colmap/model.h"
