@@ -1,0 +1,211 @@
+#include "highlights/gate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "highlights/paint_test.h"
+#include "highlights/seed_surface.h"
+#include "highlights/view_brightness.h"
+
+namespace glint {
+namespace {
+
+constexpr double kAmbiguousDeg = 4;  // a second light that explains it this nearly as well
+
+double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI;
+}
+
+struct Explanation {
+  int light = -1;
+  double error_deg = std::numeric_limits<double>::infinity();  // half vector against the nearest of the normals
+  double incidence_deg = 0;
+  bool ambiguous = false;
+  SurfaceSample at;  // the sample that agrees best
+};
+
+// The light that is mirrored best by any of the samples; those in the seed's shadow do not count.
+Explanation Explain(const View& view, const SeedSurface& surface, const std::vector<Light>& lights,
+                    const std::vector<SurfaceSample>& samples) {
+  Explanation best;
+  double second_deg = std::numeric_limits<double>::infinity();
+  for (size_t l = 0; l < lights.size(); ++l) {
+    double error_deg = std::numeric_limits<double>::infinity();
+    const SurfaceSample* at = nullptr;
+    for (const SurfaceSample& s : samples) {
+      const double e = AngleDeg(HalfVector(lights[l], view.cam_from_world, s.position), s.normal);
+      if (e < error_deg) error_deg = e, at = &s;
+    }
+    if (!at) continue;
+    const Eigen::Vector3d to_light = DirectionToLight(lights[l], view.cam_from_world, at->position);
+    const Eigen::Vector3d lamp = lights[l].type == LightType::kPoint && lights[l].frame == LightFrame::kWorld
+                                     ? lights[l].vector
+                                     : Eigen::Vector3d(at->position + 2 * surface.diagonal() * to_light);
+    if (lights[l].type == LightType::kDistant && surface.Occluded(at->position, lamp)) continue;
+    if (error_deg < best.error_deg) {
+      second_deg = best.error_deg;
+      best.light = static_cast<int>(l);
+      best.error_deg = error_deg;
+      best.incidence_deg =
+          AngleDeg(HalfVector(lights[l], view.cam_from_world, at->position), view.Center() - at->position);
+      best.at = *at;
+    } else {
+      second_deg = std::min(second_deg, error_deg);
+    }
+  }
+  best.ambiguous = second_deg - best.error_deg < kAmbiguousDeg;
+  return best;
+}
+
+struct Verdict {
+  HighlightStatus status = HighlightStatus::kAccepted;
+  Explanation explanation;
+  bool tested_for_paint = false;
+};
+
+Verdict Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
+              const std::vector<Light>& lights, const GateOptions& options, const Highlight& highlight) {
+  Verdict verdict;
+  const View& view = scene.views[highlight.view];
+  const auto ray = view.RayThrough(highlight.px);
+  std::vector<SurfaceSample> samples;
+  if (ray) samples = surface.Neighbourhood(view.Center(), *ray);
+  if (samples.empty()) {
+    verdict.status = HighlightStatus::kOffSurface;
+    return verdict;
+  }
+  verdict.explanation = Explain(view, surface, lights, samples);
+  const Explanation& e = verdict.explanation;
+  if (e.light < 0 || e.error_deg > options.max_normal_error_deg) {
+    verdict.status = HighlightStatus::kWrongNormal;
+    return verdict;
+  }
+  if (e.incidence_deg > options.max_incidence_deg) {
+    verdict.status = HighlightStatus::kGrazing;
+    return verdict;
+  }
+  const auto kept = KeptBrightness(scene, brightness, surface, lights[e.light], highlight, samples.front(),
+                                   {options.min_half_change_deg, options.min_other_views});
+  verdict.tested_for_paint = kept.has_value();
+  if (kept && *kept > options.paint_ratio) verdict.status = HighlightStatus::kStaysPut;
+  return verdict;
+}
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+GateSummary Summarise(const std::vector<Highlight>& highlights, const std::vector<Verdict>& verdicts,
+                      const std::vector<size_t>& judged, size_t num_lights) {
+  GateSummary summary;
+  summary.candidates = highlights.size();
+  summary.accepted_by_light.assign(num_lights, 0);
+  std::vector<std::vector<double>> errors(num_lights);
+  size_t ambiguous = 0;
+  for (const Highlight& h : highlights) ++summary.by_status[static_cast<size_t>(h.status)];
+  for (size_t k = 0; k < judged.size(); ++k) {
+    if (verdicts[k].status != HighlightStatus::kAccepted) continue;
+    const Explanation& e = verdicts[k].explanation;
+    ++summary.accepted;
+    ++summary.accepted_by_light[e.light];
+    errors[e.light].push_back(e.error_deg);
+    ambiguous += e.ambiguous;
+    summary.untested_for_paint += !verdicts[k].tested_for_paint;
+  }
+  for (auto& e : errors) summary.median_normal_error_deg.push_back(Median(std::move(e)));
+  summary.ambiguous_fraction = summary.accepted > 0 ? double(ambiguous) / summary.accepted : 0;
+  return summary;
+}
+
+}  // namespace
+
+void GateOptions::Visit(OptionVisitor& v) {
+  v.Field({.name = "seed_error_rel",
+           .help = "How far the seed may lie off the surface",
+           .unit = "fraction of the diagonal",
+           .min = 0.0001,
+           .max = 0.5},
+          seed_error_rel);
+  v.Field({.name = "max_normal_error_deg",
+           .help = "Largest angle between half vector and the seed's normals nearby",
+           .unit = "deg",
+           .min = 0,
+           .max = 180},
+          max_normal_error_deg);
+  v.Field(
+      {.name = "max_incidence_deg", .help = "Largest incidence angle of the light", .unit = "deg", .min = 0, .max = 89},
+      max_incidence_deg);
+  v.Field({.name = "min_half_change_deg",
+           .help = "Views whose half vector differs by less are not compared with to tell paint",
+           .unit = "deg",
+           .min = 0,
+           .max = 90},
+          min_half_change_deg);
+  v.Field({.name = "paint_ratio",
+           .help = "Paint keeps at least this fraction of its brightness over the body in the other views",
+           .unit = "ratio",
+           .min = 0,
+           .max = 2},
+          paint_ratio);
+  v.Field({.name = "min_other_views",
+           .help = "Fewest other views that can tell paint",
+           .unit = "views",
+           .min = 1,
+           .max = 1000},
+          min_other_views);
+  v.Field({.name = "image_memory_mb",
+           .help = "Memory for small copies of all views",
+           .unit = "MB",
+           .min = 16,
+           .max = 65536},
+          image_memory_mb);
+}
+
+std::string GateSummary::BriefReport() const {
+  std::string report = fmt::format("{} of {} highlight candidates accepted", accepted, candidates);
+  for (int s = 1; s < kNumHighlightStatuses; ++s)
+    if (by_status[s] > 0) report += fmt::format(", {} {}", by_status[s], StatusName(static_cast<HighlightStatus>(s)));
+  for (size_t l = 0; l < accepted_by_light.size(); ++l)
+    report += fmt::format("; light {}: {} ({:.1f} deg from the seed's normals)", l, accepted_by_light[l],
+                          median_normal_error_deg[l]);
+  if (untested_for_paint > 0)
+    report += fmt::format("; {} seen in too few views to tell from paint", untested_for_paint);
+  return report;
+}
+
+void GateHighlights(const Scene& scene, const ImageSource& images, const TriangleMesh& seed,
+                    const std::vector<Light>& lights, const GateOptions& options, std::vector<Highlight>& highlights,
+                    GateSummary* summary, Progress& progress) {
+  GLINT_CHECK_EQ(images.size(), scene.views.size());
+  GLINT_CHECK(!seed.empty());
+  const ViewBrightness brightness(images, size_t(options.image_memory_mb) << 20, progress);
+  const SeedSurface surface(seed, options.seed_error_rel * Diagonal(seed));
+
+  std::vector<size_t> judged;
+  for (size_t i = 0; i < highlights.size(); ++i) {
+    GLINT_CHECK_LT(highlights[i].view, scene.views.size());
+    if (highlights[i].status == HighlightStatus::kAccepted) judged.push_back(i);
+  }
+  std::vector<Verdict> verdicts(judged.size());
+  progress.Begin("Highlights against the other views", judged.size());
+  ParallelFor(judged.size(), 16, [&](size_t k) {
+    progress.ThrowIfCancelled();
+    verdicts[k] = Judge(scene, brightness, surface, lights, options, highlights[judged[k]]);
+    progress.Advance();
+  });
+  for (size_t k = 0; k < judged.size(); ++k) {
+    Highlight& h = highlights[judged[k]];
+    h.status = verdicts[k].status;
+    h.light = verdicts[k].explanation.light;
+  }
+  if (summary) *summary = Summarise(highlights, verdicts, judged, lights.size());
+}
+
+}  // namespace glint

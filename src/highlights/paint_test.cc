@@ -1,0 +1,89 @@
+#include "highlights/paint_test.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace glint {
+namespace {
+
+constexpr double kMaxViewAngleDeg = 72;  // between the seed's normal and a view that is compared with
+constexpr int kMaxDepths = 41;
+
+// Views in which the surface point can be seen and the light is mirrored elsewhere.
+std::vector<size_t> ViewsToCompare(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
+                                   const Light& light, const Highlight& highlight, const SurfaceSample& at,
+                                   double min_half_change_deg) {
+  const Eigen::Vector3d half = HalfVector(light, scene.views[highlight.view].cam_from_world, at.position);
+  const double min_cos = std::cos(kMaxViewAngleDeg * M_PI / 180);
+  const double max_half_cos = std::cos(min_half_change_deg * M_PI / 180);
+  std::vector<size_t> views;
+  for (size_t j = 0; j < scene.views.size(); ++j) {
+    const View& view = scene.views[j];
+    if (j == highlight.view || !brightness.Has(j)) continue;
+    const Eigen::Vector3d center = view.Center();
+    if (at.normal.dot((center - at.position).normalized()) < min_cos) continue;
+    if (HalfVector(light, view.cam_from_world, at.position).dot(half) > max_half_cos) continue;
+    const auto px = view.Project(at.position);
+    if (!px || !view.Contains(*px) || surface.Occluded(at.position, center)) continue;
+    views.push_back(j);
+  }
+  return views;
+}
+
+// Depth offsets along the ray within the seed's error, fine enough that no view skips more than `step_px`.
+std::vector<Eigen::Vector3d> PlacesAlongRay(const Scene& scene, const std::vector<size_t>& views,
+                                            const SurfaceSample& at, const Eigen::Vector3d& direction,
+                                            double error_world, double step_px) {
+  double widest = 0;
+  for (size_t j : views) {
+    const auto near = scene.views[j].Project(at.position - error_world * direction);
+    const auto far = scene.views[j].Project(at.position + error_world * direction);
+    if (near && far) widest = std::max(widest, (*far - *near).norm());
+  }
+  const int half_count = std::clamp(static_cast<int>(std::ceil(0.5 * widest / step_px)), 1, kMaxDepths / 2);
+  std::vector<Eigen::Vector3d> places;
+  for (int k = -half_count; k <= half_count; ++k)
+    places.push_back(at.position + error_world * k / half_count * direction);
+  return places;
+}
+
+}  // namespace
+
+std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
+                                     const Light& light, const Highlight& highlight, const SurfaceSample& at,
+                                     const PaintTestOptions& options) {
+  const View& view = scene.views[highlight.view];
+  const auto views = ViewsToCompare(scene, brightness, surface, light, highlight, at, options.min_half_change_deg);
+  const auto ray = view.RayThrough(highlight.px);
+  if (static_cast<int>(views.size()) < options.min_other_views || !ray) return std::nullopt;
+
+  const double pixel_size = brightness.PixelSize(highlight.view);
+  const double minor_px =
+      2 * std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(highlight.moments_px).eigenvalues()[0]);
+  const double radius_px = std::max(1.5 * pixel_size, 0.5 * minor_px);
+  const auto peak = brightness.MaxNear(highlight.view, highlight.px, radius_px);
+  const auto body = brightness.MedianAround(highlight.view, highlight.px, highlight.moments_px);
+  if (!peak || !body || *peak - *body < 1e-3) return std::nullopt;
+
+  double kept = 0;
+  bool compared = false;
+  std::vector<double> ratios;
+  for (const Eigen::Vector3d& place :
+       PlacesAlongRay(scene, views, at, *ray, 1.5 * surface.error_world(), 1.5 * radius_px)) {
+    ratios.clear();
+    for (size_t j : views) {
+      const auto px = scene.views[j].Project(place);
+      const auto value = px ? brightness.MaxNear(j, *px, radius_px) : std::nullopt;
+      if (value) ratios.push_back((*value - *body) / (*peak - *body));
+    }
+    if (static_cast<int>(ratios.size()) < options.min_other_views) continue;
+    std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
+    kept = std::max(kept, ratios[ratios.size() / 2]);
+    compared = true;
+  }
+  return compared ? std::optional<double>(kept) : std::nullopt;
+}
+
+}  // namespace glint
