@@ -29,7 +29,7 @@ std::string Duration(double seconds) {
 
 std::string Bar(size_t done, size_t total) {
   const int filled = static_cast<int>(kBarCells * std::min(done, total) / total);
-return fmt::format("[{:#<{}}{:.<{}}]", "", filled, "", kBarCells - filled);
+  return fmt::format("[{:#<{}}{:.<{}}]", "", filled, "", kBarCells - filled);
 }
 
 }  // namespace

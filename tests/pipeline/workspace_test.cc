@@ -1,0 +1,56 @@
+#include "pipeline/workspace.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "core/error.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WorkspaceTest : public ::testing::Test {
+ protected:
+  void TearDown() override { fs::remove_all(root_); }
+  fs::path root_ = fs::path(::testing::TempDir()) / "glint_workspace_test";
+};
+
+TEST_F(WorkspaceTest, OneRunAtATime) {
+  {
+    const Workspace first(root_ / "out");
+    EXPECT_TRUE(fs::is_directory(root_ / "out"));
+    EXPECT_THROW(Workspace(root_ / "out"), InputError);
+  }
+  EXPECT_NO_THROW(Workspace(root_ / "out"));
+  EXPECT_TRUE(fs::is_empty(root_ / "out")) << "the lock leaves nothing behind";
+}
+
+TEST_F(WorkspaceTest, TemporariesOfAKilledRunGoAndNothingElse) {
+  fs::create_directories(root_ / "highlights/sub");
+  for (const char* name : {".tmp-12-0.ply", "highlights/sub/.tmp-12-3.png", ".tmp-notes.txt", "mine.txt"})
+    std::ofstream(root_ / name) << "x";
+  const Workspace workspace(root_);
+  EXPECT_FALSE(fs::exists(root_ / ".tmp-12-0.ply"));
+  EXPECT_FALSE(fs::exists(root_ / "highlights/sub/.tmp-12-3.png"));
+  EXPECT_TRUE(fs::exists(root_ / ".tmp-notes.txt"));
+  EXPECT_TRUE(fs::exists(root_ / "mine.txt"));
+}
+
+TEST_F(WorkspaceTest, AFileInTheWayIsNamed) {
+  fs::create_directories(root_);
+  std::ofstream(root_ / "out") << "x";
+  EXPECT_THROW(Workspace(root_ / "out"), InputError);
+  EXPECT_THROW(Workspace(root_ / "out/deeper"), InputError);
+}
+
+TEST(PathForImage, StaysInTheFolder) {
+  EXPECT_EQ(PathForImage("out", "a/b.jpg", ".png"), fs::path("out/a/b.jpg.png"));
+  EXPECT_EQ(PathForImage("out", "ä ö.jpg", ".png"), fs::path("out/ä ö.jpg.png"));
+  for (const char* name : {"../a.jpg", "a/../../b.jpg", "/etc/passwd", "", "a/"})
+    EXPECT_THROW(PathForImage("out", name, ".png"), InputError) << name;
+}
+
+}  // namespace
+}  // namespace glint
