@@ -1,0 +1,175 @@
+#include "colmap/project.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <system_error>
+
+#include "colmap/model_files.h"
+#include "core/error.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsFolder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+bool IsFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+// Any of a model's main files: an incomplete model is found, too, and reading it says what is missing.
+bool IsModel(const fs::path& folder) {
+  constexpr std::array kFiles = {"images.bin", "images.txt", "cameras.bin", "cameras.txt"};
+  return std::any_of(kFiles.begin(), kFiles.end(), [&](const char* file) { return IsFile(folder / file); });
+}
+
+// The names of a model's images; empty where they cannot be read (reading the model will say why).
+std::vector<std::string> ImageNames(const fs::path& model) {
+  try {
+    if (IsFile(model / "images.bin")) return internal::ReadImageNamesBinary(model / "images.bin");
+    if (IsFile(model / "images.txt")) return internal::ReadImageNamesText(model / "images.txt");
+  } catch (const InputError&) {
+  }
+  return {};
+}
+
+// Sub-folders that hold models, in the order of their names ("2" before "10").
+std::vector<fs::path> SubModels(const fs::path& folder) {
+  std::vector<fs::path> models;
+  if (!IsFolder(folder)) return models;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.is_directory() && IsModel(entry.path())) models.push_back(entry.path());
+  }
+  std::sort(models.begin(), models.end(), [](const fs::path& a, const fs::path& b) {
+    const std::string x = a.filename().string();
+    const std::string y = b.filename().string();
+    return x.size() != y.size() ? x.size() < y.size() : x < y;
+  });
+  return models;
+}
+
+std::vector<fs::path> FindModels(const fs::path& project) {
+  if (IsModel(project)) return {project};
+  for (const char* where : {"sparse", "dense/sparse", "colmap/sparse", "dense/0/sparse", "distorted/sparse", "."}) {
+    const fs::path folder = (project / where).lexically_normal();
+    if (IsModel(folder)) return {folder};
+    if (auto models = SubModels(folder); !models.empty()) return models;
+  }
+  return {};
+}
+
+fs::path LargestModel(const std::vector<fs::path>& models, std::vector<std::string>& notes) {
+  if (models.size() == 1) return models.front();
+  size_t best = 0;
+  std::vector<size_t> sizes;
+  std::string list;
+  for (const fs::path& model : models) {
+    sizes.push_back(ImageNames(model).size());
+    if (sizes.back() > sizes[best]) best = sizes.size() - 1;
+    list += fmt::format("{}{} ({} images)", list.empty() ? "" : ", ", model.filename().string(), sizes.back());
+  }
+  notes.push_back(fmt::format("{} sub-models: {}; took {}, which has the most images", models.size(), list,
+                              models[best].filename().string()));
+  return models[best];
+}
+
+// Up to `limit` names spread over the list.
+std::vector<std::string> Sample(const std::vector<std::string>& names, size_t limit) {
+  if (names.size() <= limit) return names;
+  std::vector<std::string> sample;
+  for (size_t i = 0; i < limit; ++i) sample.push_back(names[i * names.size() / limit]);
+  return sample;
+}
+
+// Of the folders `candidates` beside the model and its parents, down from the nearest: the one that holds most of
+// the names; where none holds any, the first that exists.
+struct FolderChoice {
+  fs::path folder;
+  size_t num_found = 0;
+};
+FolderChoice ChooseFolder(const std::vector<fs::path>& parents, const std::vector<const char*>& candidates,
+                          const std::vector<std::string>& names, const std::string& suffix) {
+  FolderChoice choice;
+  for (const fs::path& parent : parents) {
+    for (const char* candidate : candidates) {
+      const fs::path folder = (parent / candidate).lexically_normal();
+      if (!IsFolder(folder)) continue;
+      const auto found = static_cast<size_t>(std::count_if(
+          names.begin(), names.end(), [&](const auto& name) { return IsFile(folder / (name + suffix)); }));
+      if (choice.folder.empty() || found > choice.num_found) choice = {folder, found};
+    }
+  }
+  return choice;
+}
+
+std::vector<fs::path> ParentsToSearch(const fs::path& project, const fs::path& model) {
+  std::vector<fs::path> parents;
+  fs::path folder = fs::absolute(model).lexically_normal();
+  const fs::path root = fs::absolute(project).lexically_normal();
+  // Up to the project, and three levels where the model itself was given (sparse/0 → the project's folder).
+  for (int level = 0; level < 4; ++level) {
+    parents.push_back(folder);
+    if (folder == root && model != project) break;
+    if (!folder.has_parent_path() || folder == folder.parent_path()) break;
+    folder = folder.parent_path();
+  }
+  return parents;
+}
+
+}  // namespace
+
+ProjectPaths FindProject(const fs::path& project, const fs::path& images_override, const fs::path& masks_override) {
+  if (!IsFolder(project)) {
+    throw InputError(
+        project.string(), "",
+        fs::exists(project) ? "expected a project folder, found a file" : "expected a project folder, found nothing");
+  }
+  for (const fs::path& given : {images_override, masks_override}) {
+    if (!given.empty() && !IsFolder(given)) throw InputError(given.string(), "", "expected a folder, found none");
+  }
+  ProjectPaths paths;
+  // "sparse/" and "sparse" are the same folder, but only the second has a file name.
+  paths.root = project.has_filename() || !project.has_parent_path() ? project : project.parent_path();
+  const auto models = FindModels(paths.root);
+  if (models.empty()) {
+    throw InputError(project.string(), "",
+                     "expected a COLMAP model (cameras, images and points3D as .bin or .txt) in it or in sparse/0, "
+                     "sparse or dense/sparse, found none");
+  }
+  paths.model = LargestModel(models, paths.notes);
+
+  const auto names = Sample(ImageNames(paths.model), 50);
+  const auto parents = ParentsToSearch(paths.root, paths.model);
+  paths.images = images_override;
+  if (paths.images.empty()) {
+    const FolderChoice choice =
+        ChooseFolder(parents, {"images", "input", "imgs", "image", "photos", "rgb", "."}, names, "");
+    // The bare parent folder counts only if images lie in it.
+    const bool is_bare = std::find(parents.begin(), parents.end(), choice.folder.lexically_normal()) != parents.end();
+    if (choice.num_found > 0 || (!choice.folder.empty() && !is_bare)) paths.images = choice.folder;
+    if (paths.images.empty()) paths.notes.push_back("no folder with the model's images was found");
+  }
+  paths.masks = masks_override;
+  if (paths.masks.empty()) {
+    auto mask_parents = parents;
+    if (!paths.images.empty()) mask_parents.insert(mask_parents.begin(), paths.images.lexically_normal().parent_path());
+    const FolderChoice choice = ChooseFolder(mask_parents, {"masks", "mask"}, names, ".png");
+    if (choice.num_found > 0) {
+      paths.masks = choice.folder;
+    } else if (!choice.folder.empty()) {
+      paths.notes.push_back(fmt::format("{}: not used as masks: no file is called <image name>.png, for example {}.png",
+                                        choice.folder.string(), names.empty() ? "image.jpg" : names.front()));
+    }
+  }
+  return paths;
+}
+
+}  // namespace glint
