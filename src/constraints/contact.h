@@ -2,10 +2,9 @@
 // surface, but not the depth. A contact is such a ray with the current estimate of that depth.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "colmap/scene.h"
 #include "core/options.h"
@@ -16,17 +15,17 @@ namespace glint {
 
 // Lengths in world units, angles in radians.
 struct Contact {
-  uint32_t highlight = 0;   // index into the list of highlights
-  uint32_t view = 0;        // index into Scene::views
-  int light = 0;            // index into the list of lights
-  Rigid3d cam_from_world;   // of the view
-  Eigen::Vector3d origin;   // camera centre
+  uint32_t highlight = 0;     // index into the list of highlights
+  uint32_t view = 0;          // index into Scene::views
+  int light = 0;              // index into the list of lights
+  Rigid3d cam_from_world;     // of the view
+  Eigen::Vector3d origin;     // camera centre
   Eigen::Vector3d direction;  // unit, from the camera through the highlight
-  double depth = 0;         // the contact is origin + depth * direction
-  double prior_depth = 0;   // depth at which the ray meets the current surface
-  double sigma_normal = 0;  // standard deviation of the normal
-  double sigma_depth = 0;   // from the bundle's covariance; 0: not known yet
-  double pixel_angle = 0;   // angle that the peak's standard deviation in pixels subtends
+  double depth = 0;           // the contact is origin + depth * direction
+  double prior_depth = 0;     // depth at which the ray meets the current surface
+  double sigma_normal = 0;    // standard deviation of the normal
+  double sigma_depth = 0;     // from the bundle's covariance; 0: not known yet
+  double pixel_angle = 0;     // angle that the peak's standard deviation in pixels subtends
   bool accepted = true;
 
   Eigen::Vector3d Position() const { return origin + depth * direction; }

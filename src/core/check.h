@@ -19,20 +19,18 @@ std::string DescribeOperands(const char* expression, const A& a, const B& b) {
 
 }  // namespace glint::internal
 
-#define GLINT_CHECK(condition)                                                                   \
-  do {                                                                                           \
-    if (!(condition))                                                                            \
-      ::glint::internal::CheckFailed(__FILE__, __LINE__, "check failed: " #condition);           \
+#define GLINT_CHECK(condition)                                                                         \
+  do {                                                                                                 \
+    if (!(condition)) ::glint::internal::CheckFailed(__FILE__, __LINE__, "check failed: " #condition); \
   } while (false)
 
-#define GLINT_CHECK_OP(a, op, b)                                                                 \
-  do {                                                                                           \
-    const auto& glint_a = (a);                                                                   \
-    const auto& glint_b = (b);                                                                   \
-    if (!(glint_a op glint_b))                                                                   \
-      ::glint::internal::CheckFailed(                                                            \
-          __FILE__, __LINE__,                                                                    \
-          ::glint::internal::DescribeOperands(#a " " #op " " #b, glint_a, glint_b));             \
+#define GLINT_CHECK_OP(a, op, b)                                                                                \
+  do {                                                                                                          \
+    const auto& glint_a = (a);                                                                                  \
+    const auto& glint_b = (b);                                                                                  \
+    if (!(glint_a op glint_b))                                                                                  \
+      ::glint::internal::CheckFailed(__FILE__, __LINE__,                                                        \
+                                     ::glint::internal::DescribeOperands(#a " " #op " " #b, glint_a, glint_b)); \
   } while (false)
 
 #define GLINT_CHECK_EQ(a, b) GLINT_CHECK_OP(a, ==, b)

@@ -1,10 +1,10 @@
 #include "core/options.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace glint::internal {
 namespace {
@@ -50,8 +50,7 @@ void ViolationVisitor::Field(const OptionInfo& info, std::string& value) {
 
 void ViolationVisitor::Field(const OptionInfo& info, std::vector<double>& value) {
   for (double v : value)
-    if (!InRange(info, v))
-      violations_.push_back(fmt::format("{} = {:g}: {}", Path(info.name), v, Range(info)));
+    if (!InRange(info, v)) violations_.push_back(fmt::format("{} = {:g}: {}", Path(info.name), v, Range(info)));
 }
 
 }  // namespace glint::internal

@@ -11,8 +11,7 @@ void ParallelChunks(size_t count, size_t grain, const std::function<void(size_t,
   grain = std::max<size_t>(grain, 1);
   const size_t num_chunks = (count + grain - 1) / grain;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, num_chunks, 1), [&](const auto& range) {
-    for (size_t c = range.begin(); c != range.end(); ++c)
-      body(c * grain, std::min(count, (c + 1) * grain));
+    for (size_t c = range.begin(); c != range.end(); ++c) body(c * grain, std::min(count, (c + 1) * grain));
   });
 }
 

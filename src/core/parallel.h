@@ -28,8 +28,7 @@ T ParallelSum(size_t count, size_t grain, T zero, const Value& value) {
   const size_t num_chunks = (count + grain - 1) / grain;
   std::vector<T> partial(num_chunks, zero);
   ParallelChunks(num_chunks, 1, [&](size_t first, size_t last) {
-    for (size_t c = first; c < last; ++c)
-      partial[c] = value(c * grain, std::min(count, (c + 1) * grain));
+    for (size_t c = first; c < last; ++c) partial[c] = value(c * grain, std::min(count, (c + 1) * grain));
   });
   T sum = zero;
   for (const T& p : partial) sum += p;

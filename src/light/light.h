@@ -1,10 +1,9 @@
 // Light sources: distant or point, fixed in the world or carried by the camera.
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "geometry/rigid.h"
 

@@ -1,10 +1,10 @@
 #include "refine/band.h"
 
+#include <openvdb/openvdb.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include <openvdb/openvdb.h>
 
 #include "core/check.h"
 #include "core/parallel.h"

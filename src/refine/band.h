@@ -1,12 +1,11 @@
 // The narrow band as flat arrays: what the level-set energies and solvers work on.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "sdf/level_set.h"
 

@@ -33,10 +33,10 @@ struct BandRows {
 
 // Weights of the terms that every voxel has.
 struct BandWeights {
-  double smoothness = 1;            // of ‖h² Hφ‖², second differences; mixed ones at the centres of voxel faces
-  double normal = 0;                // of (h ∂φ/∂n − h)², which keeps |∇φ| near 1
-  std::vector<Eigen::Vector3f> n;   // unit normals of the current surface, a voxel
-  std::vector<float> pull;          // of (φ − pull_target)², a voxel
+  double smoothness = 1;           // of ‖h² Hφ‖², second differences; mixed ones at the centres of voxel faces
+  double normal = 0;               // of (h ∂φ/∂n − h)², which keeps |∇φ| near 1
+  std::vector<Eigen::Vector3f> n;  // unit normals of the current surface, a voxel
+  std::vector<float> pull;         // of (φ − pull_target)², a voxel
   std::vector<float> pull_target;
 };
 

@@ -1,12 +1,12 @@
 #include "refine/bundle.h"
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
+#include <ceres/ceres.h>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
-#include <ceres/ceres.h>
+#include <algorithm>
+#include <cmath>
+#include <memory>
 
 #include "core/check.h"
 #include "refine/chord_residual.h"
@@ -34,11 +34,12 @@ void BundleOptions::Visit(OptionVisitor& v) {
            .min = 0.1,
            .max = 60},
           point_normal_sigma_deg);
-  v.Field({.name = "reject_sigmas",
-           .help = "a contact whose chords contradict its neighbours by more (median, in standard deviations) is left out",
-           .min = 1,
-           .max = 100},
-          reject_sigmas);
+  v.Field(
+      {.name = "reject_sigmas",
+       .help = "a contact whose chords contradict its neighbours by more (median, in standard deviations) is left out",
+       .min = 1,
+       .max = 100},
+      reject_sigmas);
   v.Field({.name = "rounds", .help = "solves with neighbours chosen anew in between", .min = 1, .max = 50}, rounds);
 }
 
@@ -66,7 +67,11 @@ class Solver {
  public:
   Solver(const std::vector<SurfacePoint>& points, double diagonal, const std::vector<bool>& solve_lights,
          const BundleOptions& options, std::vector<Contact>& contacts, std::vector<Light>& lights)
-      : points_(points), diagonal_(diagonal), solve_lights_(solve_lights), options_(options), lights_(lights),
+      : points_(points),
+        diagonal_(diagonal),
+        solve_lights_(solve_lights),
+        options_(options),
+        lights_(lights),
         given_lights_(lights) {
     for (Contact& contact : contacts)
       if (contact.accepted) contacts_.push_back(&contact);
@@ -105,6 +110,7 @@ class Solver {
   void AddResiduals(ceres::Problem& problem);
   void EstimateCovariance(ceres::Problem& problem, BundleSummary& summary);
   double ChordResidualOf(const Chord& chord) const;
+  double PointChordResidualOf(const Chord& chord) const;
 
   const std::vector<SurfacePoint>& points_;
   const double diagonal_;
@@ -175,6 +181,15 @@ double Solver::ChordResidualOf(const Chord& chord) const {
   return r;
 }
 
+double Solver::PointChordResidualOf(const Chord& chord) const {
+  const Contact& a = *contacts_[chord.a];
+  const SurfacePoint& p = points_[chord.b];
+  const PointChordResidual residual{{a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma};
+  double r;
+  residual(&a.depth, lights_[a.light].vector.data(), &r);
+  return r;
+}
+
 void Solver::AddResiduals(ceres::Problem& problem) {
   for (size_t k = 0; k < lights_.size(); ++k) {
     double* light = lights_[k].vector.data();
@@ -196,23 +211,22 @@ void Solver::AddResiduals(ceres::Problem& problem) {
   for (const Chord& chord : point_chords_) {
     Contact& a = *contacts_[chord.a];
     const SurfacePoint& p = points_[chord.b];
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<PointChordResidual, 1, 1, 3>(
-            new PointChordResidual{{a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma}),
-        new ceres::CauchyLoss(2), &a.depth, lights_[a.light].vector.data());
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointChordResidual, 1, 1, 3>(
+                                 new PointChordResidual{{a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma}),
+                             new ceres::CauchyLoss(2), &a.depth, lights_[a.light].vector.data());
   }
   for (Contact* c : contacts_) {
     const double facing = std::max(0.2, -c->direction.dot(ContactNormal(*c, lights_[c->light])));
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorResidual<1>, 1, 1>(new PriorResidual<1>{
-                                 Eigen::Matrix<double, 1, 1>(c->prior_depth),
-                                 facing / (options_.prior_sigma_rel * diagonal_)}),
-                             nullptr, &c->depth);
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<PriorResidual<1>, 1, 1>(new PriorResidual<1>{
+            Eigen::Matrix<double, 1, 1>(c->prior_depth), facing / (options_.prior_sigma_rel * diagonal_)}),
+        nullptr, &c->depth);
   }
   for (size_t k = 0; k < lights_.size(); ++k)
     if (solve_lights_[k] && given_lights_[k].sigma > 0) {
       const double unit = given_lights_[k].type == LightType::kDistant ? kRadians : 1.0;
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorResidual<3>, 3, 3>(new PriorResidual<3>{
-                                   given_lights_[k].vector, 1 / (given_lights_[k].sigma * unit)}),
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorResidual<3>, 3, 3>(
+                                   new PriorResidual<3>{given_lights_[k].vector, 1 / (given_lights_[k].sigma * unit)}),
                                nullptr, lights_[k].vector.data());
     }
 }
@@ -258,9 +272,8 @@ void Solver::EstimateCovariance(ceres::Problem& problem, BundleSummary& summary)
     return std::max(0.0, factor.solve(unit)[column]);
   };
   for (size_t i = 0; i < contacts_.size(); ++i)
-    contacts_[i]->sigma_depth = contacts_.size() <= kMaxExactCovariance
-                                    ? std::sqrt(variance(static_cast<int>(i)))
-                                    : 1 / std::sqrt(normal_matrix.coeff(i, i));
+    contacts_[i]->sigma_depth = contacts_.size() <= kMaxExactCovariance ? std::sqrt(variance(static_cast<int>(i)))
+                                                                        : 1 / std::sqrt(normal_matrix.coeff(i, i));
   int column = static_cast<int>(contacts_.size());
   for (size_t k : free_lights) {
     const bool distant = lights_[k].type == LightType::kDistant;
@@ -280,6 +293,7 @@ int Solver::Reject() {
     residuals[chord.a].push_back(r);
     residuals[chord.b].push_back(r);
   }
+  for (const Chord& chord : point_chords_) residuals[chord.a].push_back(std::abs(PointChordResidualOf(chord)));
   std::vector<double> score(contacts_.size());
   for (size_t i = 0; i < contacts_.size(); ++i) score[i] = Median(residuals[i]);
   // Only the worst of each neighbourhood goes, the others are judged again without it.

@@ -2,10 +2,9 @@
 // integrability of neighbouring contacts, reliable surface points and a weak prior to the current surface.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "constraints/contact.h"
 #include "core/options.h"
@@ -43,11 +42,11 @@ struct BundleSummary {
   int num_rejected = 0;
   double initial_cost = 0;
   double final_cost = 0;
-  double motion_rel = 0;           // median motion of the contacts, fraction of the diagonal
-  double chord_rms_sigmas = 0;     // of the accepted contacts' chords, in their standard deviations
+  double motion_rel = 0;        // median motion of the contacts, fraction of the diagonal
+  double chord_rms_sigmas = 0;  // of the accepted contacts' chords, in their standard deviations
   std::vector<BundleLightUpdate> lights;
   bool usable = true;
-  std::string message;             // Ceres' brief report of the last solve
+  std::string message;  // Ceres' brief report of the last solve
 };
 
 // Moves `contacts` (depth, sigma_depth, accepted) and, where solve_lights[k] is set, `lights[k]`. `diagonal` is the

@@ -3,9 +3,8 @@
 // (DESIGN 3.4, "variational"). Integrals are over the surface, so that weights do not depend on the voxel size.
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "core/options.h"
 #include "refine/band_system.h"

@@ -1,10 +1,9 @@
 #include "refine/neighbors.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <Eigen/Geometry>
 
 #include "core/check.h"
 #include "core/parallel.h"

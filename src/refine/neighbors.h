@@ -1,17 +1,16 @@
 // Which contacts and surface points are tied by chords.
 #pragma once
 
+#include <Eigen/Core>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace glint {
 
 struct NeighborOptions {
-  int count = 12;              // at most, a contact; spread over the directions of the tangent plane
-  double max_normal_angle = 0.6;   // radians
-  double max_chord_angle = 0.5;    // radians between a chord and the plane across the mean normal
+  int count = 12;                 // at most, a contact; spread over the directions of the tangent plane
+  double max_normal_angle = 0.6;  // radians
+  double max_chord_angle = 0.5;   // radians between a chord and the plane across the mean normal
 };
 
 // For every query the indices of up to `count` targets near it, spread over six sectors of its tangent plane so that

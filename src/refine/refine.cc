@@ -1,10 +1,10 @@
 #include "refine/refine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "core/check.h"
 #include "geometry/ray_caster.h"

@@ -44,8 +44,8 @@ inline std::vector<Rigid3d> DomeViews(int count) {
 }
 
 struct EllipsoidContacts {
-  std::vector<Contact> contacts;        // with true depths
-  std::vector<SurfacePoint> points;     // exact, with true normals
+  std::vector<Contact> contacts;     // with true depths
+  std::vector<SurfacePoint> points;  // exact, with true normals
 };
 
 inline EllipsoidContacts MakeEllipsoidContacts(const Ellipsoid& shape, const std::vector<Light>& lights, int num_views,

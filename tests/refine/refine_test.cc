@@ -1,0 +1,182 @@
+#include "refine/refine.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "tests/support/ellipsoid_scene.h"
+#include "tests/support/shapes.h"
+
+namespace glint {
+namespace {
+
+using testing::DistantLight;
+using testing::Ellipsoid;
+using testing::EllipsoidContacts;
+
+struct Problem {
+  Ellipsoid shape;
+  Scene scene;
+  TriangleMesh seed;
+  std::vector<uint8_t> point_used;
+  std::vector<Highlight> highlights;
+  std::vector<Light> lights;
+  std::vector<Eigen::Vector3d> contact_positions;  // true
+
+  RefineInput Input() const { return {scene, seed, point_used, highlights, lights}; }
+};
+
+// A seed that is dented and faceted by a few percent, exact highlights, sparse points with a little noise.
+Problem MakeProblem(double scale = 1, const Eigen::Vector3d& offset = Eigen::Vector3d::Zero()) {
+  Problem p;
+  p.lights = {DistantLight(1, 0.2, 1), DistantLight(-0.8, 0.5, 1)};
+  const EllipsoidContacts truth = testing::MakeEllipsoidContacts(p.shape, p.lights, 48, 200);
+  Camera camera;
+  camera.model = CameraModel::kPinhole;
+  camera.width = 800;
+  camera.height = 600;
+  camera.params = {900, 900, 400, 300};
+  for (const Rigid3d& cam_from_unit : testing::DomeViews(48)) {
+    View view;
+    view.camera = camera;
+    view.cam_from_world.rotation = cam_from_unit.rotation;
+    const Eigen::Vector3d center = scale * cam_from_unit.Inverse().translation + offset;
+    view.cam_from_world.translation = -(view.cam_from_world.rotation * center);
+    p.scene.views.push_back(view);
+  }
+  for (const Contact& c : truth.contacts) {
+    const Eigen::Vector3d x = scale * c.Position() + offset;
+    Highlight h;
+    h.view = c.view;
+    h.light = c.light;
+    h.px = *p.scene.views[c.view].Project(x);
+    h.covariance_px = 0.01 * Eigen::Matrix2d::Identity();
+    h.moments_px = 25 * Eigen::Matrix2d::Identity();
+    p.highlights.push_back(h);
+    p.contact_positions.push_back(x);
+  }
+  for (const SurfacePoint& s : truth.points) {
+    ScenePoint point{scale * s.position + offset, {200, 200, 200}, 0.5, {}};
+    for (uint32_t v = 0; v < 3; ++v) point.observations.push_back({v, {400, 300}});
+    p.scene.points.push_back(point);
+  }
+  p.point_used.assign(p.scene.points.size(), 1);
+  p.seed = testing::Icosphere(3);
+  for (Eigen::Vector3d& v : p.seed.vertices) {
+    const double dent = 0.96 + 0.03 * std::sin(5 * v.x() + 1) * std::cos(4 * v.y()) + 0.01 * std::sin(40 * v.z());
+    v = scale * dent * p.shape.radii.cwiseProduct(v) + offset;
+  }
+  return p;
+}
+
+RefineOptions FastOptions() {
+  RefineOptions options;
+  options.voxel_rel = 1.0 / 96;
+  options.levels = 2;
+  return options;
+}
+
+struct Errors {
+  double normal_deg = 0;
+  double distance_rel = 0;
+};
+
+// Mean over the vertices near true contacts: normal against the ellipsoid's, and first-order distance to it.
+Errors NearContacts(const Problem& p, const TriangleMesh& mesh, double scale = 1,
+                    const Eigen::Vector3d& offset = Eigen::Vector3d::Zero()) {
+  Errors errors;
+  int count = 0;
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) {
+    double nearest = 1e300;
+    for (const Eigen::Vector3d& c : p.contact_positions)
+      nearest = std::min(nearest, (c - mesh.vertices[v]).norm() / scale);
+    if (nearest > 0.06) continue;
+    const Eigen::Vector3d x = (mesh.vertices[v] - offset) / scale;
+    const Eigen::Vector3d q = x.cwiseQuotient(p.shape.radii);
+    const Eigen::Vector3d gradient = q.cwiseQuotient(p.shape.radii) / q.norm();
+    errors.distance_rel += std::abs((q.norm() - 1) / gradient.norm()) / p.shape.Diagonal();
+    const double cosine = std::clamp(gradient.normalized().dot(mesh.normals[v]), -1.0, 1.0);
+    errors.normal_deg += std::acos(cosine) * 180 / M_PI;
+    ++count;
+  }
+  EXPECT_GT(count, 50);
+  errors.normal_deg /= count;
+  errors.distance_rel /= count;
+  return errors;
+}
+
+TEST(Refine, BringsADentedSeedToTheTrueSurface) {
+  const Problem p = MakeProblem();
+  RefineOptions options = FastOptions();
+  const RefineResult with = Refine(p.Input(), options);
+  options.use_highlights = false;
+  const RefineResult without = Refine(p.Input(), options);
+  const Errors good = NearContacts(p, with.mesh), smooth = NearContacts(p, without.mesh);
+  RecordProperty("normal_deg", std::to_string(good.normal_deg));
+  EXPECT_LT(good.normal_deg, 1.0);
+  EXPECT_LT(good.distance_rel, 0.001);
+  EXPECT_GT(smooth.normal_deg, 3 * good.normal_deg);
+  EXPECT_EQ(with.summary.num_contacts, static_cast<int>(p.highlights.size()));
+  EXPECT_EQ(without.summary.num_contacts, 0);
+}
+
+TEST(Refine, EveryStepLowersItsEnergy) {
+  const Problem p = MakeProblem();
+  const RefineResult result = Refine(p.Input(), FastOptions());
+  ASSERT_FALSE(result.summary.iterations.empty());
+  for (const IterationSummary& iteration : result.summary.iterations) {
+    EXPECT_LE(iteration.step.energy_after, iteration.step.energy_before * (1 + 1e-9));
+    EXPECT_LE(iteration.bundle.final_cost, iteration.bundle.initial_cost * (1 + 1e-9));
+  }
+}
+
+TEST(Refine, IsEquivariantUnderScaleAndTranslation) {
+  const Problem unit = MakeProblem();
+  const RefineResult a = Refine(unit.Input(), FastOptions());
+  const Errors expected = NearContacts(unit, a.mesh);
+  for (double scale : {1e-6, 1e6}) {
+    const Eigen::Vector3d offset = scale * Eigen::Vector3d(3, -2, 1);
+    const Problem p = MakeProblem(scale, offset);
+    const RefineResult b = Refine(p.Input(), FastOptions());
+    const Errors errors = NearContacts(p, b.mesh, scale, offset);
+    EXPECT_NEAR(errors.normal_deg, expected.normal_deg, 0.1);
+    EXPECT_NEAR(b.level_set.voxel_size() / a.level_set.voxel_size(), scale, 1e-6 * scale);
+  }
+}
+
+TEST(Refine, IsTheSameAtAnyNumberOfThreads) {
+  const Problem p = MakeProblem();
+  RefineOptions options = FastOptions();
+  options.levels = 1;
+  std::vector<TriangleMesh> meshes;
+  for (int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    meshes.push_back(Refine(p.Input(), options).mesh);
+  }
+  EXPECT_EQ(meshes[0].vertices, meshes[1].vertices);
+  EXPECT_EQ(meshes[0].faces, meshes[1].faces);
+  EXPECT_EQ(meshes[0].confidence, meshes[1].confidence);
+}
+
+TEST(Refine, SolvesForALightThatIsOff) {
+  Problem p = MakeProblem();
+  const std::vector<Light> truth = p.lights;
+  p.lights = {DistantLight(1.15, 0.1, 0.95), DistantLight(-0.75, 0.6, 1.05)};
+  for (Light& light : p.lights) light.sigma = 10;
+  const RefineResult result = Refine(p.Input(), FastOptions());
+  for (size_t k = 0; k < truth.size(); ++k)
+    EXPECT_LT(std::acos(result.lights[k].vector.dot(truth[k].vector)) * 180 / M_PI, 1.0);
+}
+
+TEST(Refine, WithoutAnyKnowledgeTheSeedStays) {
+  Problem p = MakeProblem();
+  p.highlights.clear();
+  p.point_used.clear();
+  const RefineResult result = Refine(p.Input(), FastOptions());
+  EXPECT_NEAR(SignedVolume(result.mesh) / SignedVolume(p.seed), 1, 0.01);
+}
+
+}  // namespace
+}  // namespace glint
