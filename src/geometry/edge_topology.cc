@@ -1,0 +1,91 @@
+#include "geometry/edge_topology.h"
+
+#include <algorithm>
+
+#include "core/check.h"
+#include "core/parallel.h"
+
+namespace glint {
+
+namespace {
+
+// Corners by the lower vertex of their edge; ascending within a vertex.
+struct CornersByVertex {
+  std::vector<uint32_t> first;
+  std::vector<uint32_t> corners;
+};
+
+int Lower(const TriangleMesh& mesh, uint32_t corner) {
+  const Eigen::Vector3i& face = mesh.faces[corner / 3];
+  return std::min(face[corner % 3], face[(corner + 1) % 3]);
+}
+
+int Higher(const TriangleMesh& mesh, uint32_t corner) {
+  const Eigen::Vector3i& face = mesh.faces[corner / 3];
+  return std::max(face[corner % 3], face[(corner + 1) % 3]);
+}
+
+CornersByVertex SortByLowerVertex(const TriangleMesh& mesh) {
+  const uint32_t num_corners = static_cast<uint32_t>(3 * mesh.faces.size());
+  CornersByVertex out;
+  out.first.assign(mesh.vertices.size() + 1, 0);
+  out.corners.resize(num_corners);
+  for (uint32_t c = 0; c < num_corners; ++c) ++out.first[Lower(mesh, c) + 1];
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) out.first[v + 1] += out.first[v];
+  std::vector<uint32_t> next(out.first.begin(), out.first.end() - 1);
+  for (uint32_t c = 0; c < num_corners; ++c) out.corners[next[Lower(mesh, c)]++] = c;
+  return out;
+}
+
+}  // namespace
+
+EdgeTopology BuildEdgeTopology(const TriangleMesh& mesh) {
+  const size_t num_vertices = mesh.vertices.size();
+  GLINT_CHECK_LT(mesh.faces.size(), size_t{1} << 30);
+  CornersByVertex by_vertex = SortByLowerVertex(mesh);
+  std::vector<uint32_t>& corners = by_vertex.corners;
+  // Within a vertex by the other end, then by corner; count the edges that start there.
+  std::vector<uint32_t> first_edge(num_vertices + 1, 0);
+  ParallelFor(num_vertices, 4096, [&](size_t v) {
+    const auto begin = corners.begin() + by_vertex.first[v], end = corners.begin() + by_vertex.first[v + 1];
+    std::sort(begin, end, [&](uint32_t a, uint32_t b) {
+      const int x = Higher(mesh, a), y = Higher(mesh, b);
+      return x != y ? x < y : a < b;
+    });
+    uint32_t count = 0;
+    for (auto c = begin; c != end; ++c)
+      if (c == begin || Higher(mesh, *c) != Higher(mesh, *(c - 1))) ++count;
+    first_edge[v + 1] = count;
+  });
+  for (size_t v = 0; v < num_vertices; ++v) first_edge[v + 1] += first_edge[v];
+  EdgeTopology out;
+  out.first.resize(first_edge[num_vertices] + 1);
+  out.edge_of_corner.resize(corners.size());
+  ParallelFor(num_vertices, 4096, [&](size_t v) {
+    uint32_t edge = first_edge[v];
+    for (uint32_t i = by_vertex.first[v]; i < by_vertex.first[v + 1]; ++i) {
+      const bool starts = i == by_vertex.first[v] || Higher(mesh, corners[i]) != Higher(mesh, corners[i - 1]);
+      if (starts) out.first[edge++] = i;
+      out.edge_of_corner[corners[i]] = edge - 1;
+    }
+  });
+  out.first.back() = static_cast<uint32_t>(corners.size());
+  out.corners = std::move(corners);
+  return out;
+}
+
+EdgeCounts CountEdges(const TriangleMesh& mesh, const EdgeTopology& topology) {
+  EdgeCounts counts;
+  counts.edges = topology.num_edges();
+  for (size_t e = 0; e < topology.num_edges(); ++e) {
+    const auto corners = topology.CornersOf(e);
+    if (corners.size() == 1) ++counts.boundary;
+    if (corners.size() > 2) ++counts.non_manifold;
+    if (corners.size() != 2) continue;
+    const auto start = [&](uint32_t c) { return mesh.faces[c / 3][c % 3]; };
+    if (start(corners[0]) == start(corners[1])) ++counts.misoriented;
+  }
+  return counts;
+}
+
+}  // namespace glint

@@ -1,0 +1,114 @@
+#include "sdf/extract_mesh.h"
+
+#include <fmt/format.h>
+#include <openvdb/tools/Interpolation.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "sdf/level_set_impl.h"
+
+namespace glint {
+
+namespace {
+
+using openvdb::Vec3d;
+using Accessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>;
+
+double Sample(const Accessor& accessor, const Vec3d& x) { return openvdb::tools::BoxSampler::sample(accessor, x); }
+
+Vec3d Gradient(const Accessor& accessor, const Vec3d& x, double step) {
+  Vec3d gradient;
+  for (int k = 0; k < 3; ++k) {
+    Vec3d offset(0.0);
+    offset[k] = step;
+    gradient[k] = (Sample(accessor, x + offset) - Sample(accessor, x - offset)) / (2 * step);
+  }
+  return gradient;
+}
+
+// Newton steps onto the iso-surface along the gradient; stays within a voxel of where it began.
+Vec3d Project(const Accessor& accessor, const Vec3d& start, double iso) {
+  Vec3d x = start, best = start;
+  double best_residual = std::abs(Sample(accessor, x) - iso);
+  for (int step = 0; step < 5 && best_residual > 0; ++step) {
+    const Vec3d gradient = Gradient(accessor, x, 0.5);
+    const double squared = gradient.lengthSqr();
+    if (!(squared > 0)) break;
+    const double residual = Sample(accessor, x) - iso;
+    x -= gradient * (residual / squared);
+    if ((x - start).lengthSqr() > 1) break;
+    const double new_residual = std::abs(Sample(accessor, x) - iso);
+    if (new_residual < best_residual) {
+      best_residual = new_residual;
+      best = x;
+    }
+  }
+  return best;
+}
+
+void AddTriangle(std::vector<Eigen::Vector3i>& faces, uint32_t a, uint32_t b, uint32_t c) {
+  if (a != b && b != c && c != a) faces.emplace_back(a, b, c);
+}
+
+// Quads are split along their shorter diagonal. OpenVDB winds polygons clockwise seen from outside.
+std::vector<Eigen::Vector3i> Triangulate(const std::vector<Vec3d>& x, const std::vector<openvdb::Vec3I>& triangles,
+                                         const std::vector<openvdb::Vec4I>& quads) {
+  std::vector<Eigen::Vector3i> faces;
+  faces.reserve(triangles.size() + 2 * quads.size());
+  for (const openvdb::Vec3I& t : triangles) AddTriangle(faces, t[2], t[1], t[0]);
+  for (const openvdb::Vec4I& q : quads) {
+    if ((x[q[0]] - x[q[2]]).lengthSqr() <= (x[q[1]] - x[q[3]]).lengthSqr()) {
+      AddTriangle(faces, q[2], q[1], q[0]);
+      AddTriangle(faces, q[3], q[2], q[0]);
+    } else {
+      AddTriangle(faces, q[3], q[1], q[0]);
+      AddTriangle(faces, q[3], q[2], q[1]);
+    }
+  }
+  return faces;
+}
+
+}  // namespace
+
+TriangleMesh ExtractMesh(const LevelSet& level_set, double iso_world) {
+  TriangleMesh mesh;
+  if (level_set.empty()) return mesh;
+  const openvdb::FloatGrid& grid = *level_set.impl().grid;
+  if (!(std::abs(iso_world) < grid.background()))
+    throw InputError(
+        "", "iso level",
+        fmt::format("expected less than the half width of the band, {}, found {}", grid.background(), iso_world));
+  // Index space about the band's centre: OpenVDB hands points back in single precision.
+  const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  const openvdb::Coord center(box.min()[0] + (box.max()[0] - box.min()[0]) / 2,
+                              box.min()[1] + (box.max()[1] - box.min()[1]) / 2,
+                              box.min()[2] + (box.max()[2] - box.min()[2]) / 2);
+  const openvdb::FloatGrid::ConstPtr centered = grid.copyReplacingTransform(openvdb::math::Transform::Ptr(
+      new openvdb::math::Transform(openvdb::math::MapBase::Ptr(new openvdb::math::TranslationMap(-center.asVec3d())))));
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+  std::vector<openvdb::Vec4I> quads;
+  openvdb::tools::volumeToMesh(*centered, points, triangles, quads, iso_world, 0.0, true);
+
+  const Accessor shared(grid.tree());
+  std::vector<Vec3d> in_index(points.size());
+  mesh.vertices.resize(points.size());
+  mesh.normals.resize(points.size());
+  ParallelChunks(points.size(), 4096, [&](size_t begin, size_t end) {
+    const Accessor accessor(shared);
+    for (size_t v = begin; v < end; ++v) {
+      const Vec3d start = Vec3d(points[v]) + center.asVec3d();
+      in_index[v] = Project(accessor, start, iso_world);
+      mesh.vertices[v] = FromVdb(grid.indexToWorld(in_index[v]));
+      const Vec3d gradient = grid.transform().baseMap()->applyIJT(Gradient(accessor, in_index[v], 1));
+      mesh.normals[v] = FromVdb(gradient).normalized();
+    }
+  });
+  mesh.faces = Triangulate(in_index, triangles, quads);
+  return mesh;
+}
+
+}  // namespace glint

@@ -1,0 +1,15 @@
+// What a narrow band will take, said before it is taken.
+#pragma once
+
+#include "geometry/triangle_mesh.h"
+
+namespace glint {
+
+// Bytes that the narrow band of `mesh_in_index` (coordinates in voxels) will need at least, grid and work space.
+double PredictBandBytes(const TriangleMesh& mesh_in_index, double half_width_voxels);
+
+// Throws InputError if the coordinates do not fit OpenVDB's 32-bit indices or if the prediction exceeds
+// max_memory_gb (0: the memory that is free now).
+void CheckGridFits(const TriangleMesh& mesh_in_index, double half_width_voxels, double max_memory_gb);
+
+}  // namespace glint

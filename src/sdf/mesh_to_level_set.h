@@ -1,0 +1,48 @@
+// Exact narrow-band signed distance of a triangle mesh, with angle-weighted pseudo-normals [BA05].
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <string>
+
+#include "core/options.h"
+#include "geometry/triangle_mesh.h"
+#include "sdf/level_set.h"
+
+namespace glint {
+
+struct SdfOptions {
+  double half_width_voxels = 3;
+  // "pseudonormal": exact for closed, consistently oriented meshes without self-intersections. "winding": generalised
+  // winding number (Barill et al. 2018), for the rest. "auto": pseudo-normals unless the mesh or the signs themselves
+  // show that it is not of that kind; the summary says so. "unsigned": plain distance.
+  std::string sign = "auto";
+  double max_memory_gb = 0;  // 0: what the machine has free
+
+  void Visit(OptionVisitor& v);
+};
+
+struct SdfSummary {
+  std::string sign;     // the method used
+  std::string reason;   // why, in words for the user
+  bool turned = false;  // the mesh was inside out and has been turned
+  size_t boundary_edges = 0;
+  size_t non_manifold_edges = 0;
+  size_t misoriented_edges = 0;
+  size_t degenerate_faces = 0;
+  size_t active_voxels = 0;
+  double predicted_bytes = 0;  // of the grid and the work space
+};
+
+// Voxels at integer multiples of voxel_size_world: every value with |d| < half width is exact to float rounding and
+// active; inactive values are ± half width, negative inside (always positive for "unsigned"). Deterministic.
+// Throws InputError if the mesh is empty or has bad vertices or indices, if the voxel size is not positive and finite,
+// or if the grid would not fit in memory (the message says how much it needs).
+LevelSet MeshToLevelSet(const TriangleMesh& mesh, double voxel_size_world, const SdfOptions& options = {},
+                        SdfSummary* summary = nullptr);
+
+// The same with a transform of one's own: a rotation, a uniform scale and a translation.
+LevelSet MeshToLevelSet(const TriangleMesh& mesh, const Eigen::Affine3d& world_from_index,
+                        const SdfOptions& options = {}, SdfSummary* summary = nullptr);
+
+}  // namespace glint
