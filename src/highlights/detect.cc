@@ -67,6 +67,22 @@ Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, c
   return h;
 }
 
+// A glint is found again at coarser levels as the middle of its own halo: what has its peak inside a smaller and
+// stronger highlight is that one. Highlights come from fine to coarse.
+void DropHaloes(std::vector<Highlight>& highlights) {
+  std::vector<Highlight> kept;
+  for (const Highlight& h : highlights) {
+    const bool halo = std::any_of(kept.begin(), kept.end(), [&](const Highlight& k) {
+      if (k.area_px > h.area_px || k.strength < h.strength) return false;
+      const Eigen::Vector2d d = h.px - k.px;
+      const double reach = 4 * k.moments_px.trace();
+      return d.squaredNorm() < reach && d.dot(k.moments_px.inverse() * d) < 4;
+    });
+    if (!halo) kept.push_back(h);
+  }
+  highlights = std::move(kept);
+}
+
 }  // namespace
 
 void DetectOptions::Visit(OptionVisitor& v) {
@@ -127,6 +143,7 @@ std::vector<Highlight> DetectHighlights(const cv::Mat& image_bgr, const cv::Mat&
   for (const Blob& blob : blobs)
     highlights.push_back(Describe(image_bgr, blob, pyramid[blob.level], masks.empty() ? cv::Mat() : masks[blob.level],
                                   view, max_size_px, options));
+  DropHaloes(highlights);
   std::stable_sort(highlights.begin(), highlights.end(), [](const Highlight& a, const Highlight& b) {
     if (a.strength != b.strength) return a.strength > b.strength;
     return a.px.y() != b.px.y() ? a.px.y() < b.px.y() : a.px.x() < b.px.x();

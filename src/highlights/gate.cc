@@ -46,7 +46,7 @@ Explanation Explain(const View& view, const SeedSurface& surface, const std::vec
     const Eigen::Vector3d lamp = lights[l].type == LightType::kPoint && lights[l].frame == LightFrame::kWorld
                                      ? lights[l].vector
                                      : Eigen::Vector3d(at->position + 2 * surface.diagonal() * to_light);
-    if (lights[l].type == LightType::kDistant && surface.Occluded(at->position, lamp)) continue;
+    if (lights[l].type == LightType::kDistant && surface.Occluded(*at, lamp)) continue;
     if (error_deg < best.error_deg) {
       second_deg = best.error_deg;
       best.light = static_cast<int>(l);
@@ -186,7 +186,7 @@ void GateHighlights(const Scene& scene, const ImageSource& images, const Triangl
   GLINT_CHECK_EQ(images.size(), scene.views.size());
   GLINT_CHECK(!seed.empty());
   const ViewBrightness brightness(images, size_t(options.image_memory_mb) << 20, progress);
-  const SeedSurface surface(seed, options.seed_error_rel * Diagonal(seed));
+  const SeedSurface surface(seed, scene.points, options.seed_error_rel * Diagonal(seed));
 
   std::vector<size_t> judged;
   for (size_t i = 0; i < highlights.size(); ++i) {

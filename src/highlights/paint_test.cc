@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kMaxViewAngleDeg = 72;  // between the seed's normal and a view that is compared with
 constexpr int kMaxDepths = 41;
+constexpr size_t kEnoughViews = 6;
 
 // Views in which the surface point can be seen and the light is mirrored elsewhere.
 std::vector<size_t> ViewsToCompare(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
@@ -18,17 +20,24 @@ std::vector<size_t> ViewsToCompare(const Scene& scene, const ViewBrightness& bri
   const Eigen::Vector3d half = HalfVector(light, scene.views[highlight.view].cam_from_world, at.position);
   const double min_cos = std::cos(kMaxViewAngleDeg * M_PI / 180);
   const double max_half_cos = std::cos(min_half_change_deg * M_PI / 180);
-  std::vector<size_t> views;
+  std::vector<std::pair<double, size_t>> by_change;
   for (size_t j = 0; j < scene.views.size(); ++j) {
     const View& view = scene.views[j];
     if (j == highlight.view || !brightness.Has(j)) continue;
     const Eigen::Vector3d center = view.Center();
     if (at.normal.dot((center - at.position).normalized()) < min_cos) continue;
-    if (HalfVector(light, view.cam_from_world, at.position).dot(half) > max_half_cos) continue;
+    const double half_cos = HalfVector(light, view.cam_from_world, at.position).dot(half);
+    if (half_cos > max_half_cos) continue;
     const auto px = view.Project(at.position);
-    if (!px || !view.Contains(*px) || surface.Occluded(at.position, center)) continue;
-    views.push_back(j);
+    if (!px || !view.Contains(*px) || surface.Occluded(at, center)) continue;
+    by_change.emplace_back(half_cos, j);
   }
+  // Seen from about the same side a highlight on a round surface stays at its virtual image, as if it were paint
+  // a little behind the surface: the views farthest round tell best.
+  std::sort(by_change.begin(), by_change.end());
+  if (by_change.size() > kEnoughViews) by_change.resize(std::max(kEnoughViews, by_change.size() / 2));
+  std::vector<size_t> views;
+  for (const auto& [half_cos, j] : by_change) views.push_back(j);
   return views;
 }
 
@@ -70,8 +79,7 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
   double kept = 0;
   bool compared = false;
   std::vector<double> ratios;
-  for (const Eigen::Vector3d& place :
-       PlacesAlongRay(scene, views, at, *ray, 1.5 * surface.error_world(), 1.5 * radius_px)) {
+  for (const Eigen::Vector3d& place : PlacesAlongRay(scene, views, at, *ray, at.error_world, 1.5 * radius_px)) {
     ratios.clear();
     for (size_t j : views) {
       const auto px = scene.views[j].Project(place);

@@ -1,9 +1,15 @@
 #include "highlights/seed_surface.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace glint {
 namespace {
+
+constexpr size_t kMaxPoints = 20000;
+constexpr size_t kNeighbours = 6;
 
 // Area-weighted vertex normals, smoothed over the one-ring a few times: the facets of a sparse seed are off by tens of
 // degrees one by one, much less on average.
@@ -28,13 +34,29 @@ std::vector<Eigen::Vector3d> SmoothNormals(const TriangleMesh& mesh) {
 
 }  // namespace
 
-SeedSurface::SeedSurface(const TriangleMesh& mesh, double error_world)
+SeedSurface::SeedSurface(const TriangleMesh& mesh, const std::vector<ScenePoint>& points, double max_error_world)
     : faces_(mesh.faces),
       normals_(SmoothNormals(mesh)),
       caster_(mesh),
       center_(BoundingBox(mesh).center()),
       diagonal_(Diagonal(mesh)),
-      error_world_(error_world) {}
+      max_error_world_(max_error_world) {
+  const size_t stride = points.size() / kMaxPoints + 1;
+  for (size_t i = 0; i < points.size(); i += stride) points_.push_back(points[i].position);
+  spacing_scale_ = std::sqrt(1.0 / stride);
+}
+
+double SeedSurface::ErrorAt(const Eigen::Vector3d& x) const {
+  std::array<double, kNeighbours> nearest;  // squared, ascending
+  nearest.fill(std::numeric_limits<double>::infinity());
+  for (const auto& p : points_) {
+    double d = (p - x).squaredNorm();
+    for (double& n : nearest)
+      if (d < n) std::swap(d, n);
+  }
+  const double spacing = spacing_scale_ * std::sqrt(nearest.back());
+  return std::clamp(spacing, 0.1 * max_error_world_, max_error_world_);
+}
 
 std::optional<SurfaceSample> SeedSurface::Hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
   const auto hit = caster_.Intersect(origin, direction);
@@ -42,13 +64,14 @@ std::optional<SurfaceSample> SeedSurface::Hit(const Eigen::Vector3d& origin, con
   const Eigen::Vector3i& f = faces_[hit->face];
   Eigen::Vector3d normal = (1 - hit->u - hit->v) * normals_[f[0]] + hit->u * normals_[f[1]] + hit->v * normals_[f[2]];
   if (normal.norm() < 1e-6) normal = hit->normal;
-  return SurfaceSample{hit->position, normal.normalized()};
+  return SurfaceSample{hit->position, normal.normalized(), max_error_world_};
 }
 
 std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& origin,
                                                       const Eigen::Vector3d& direction) const {
   std::vector<SurfaceSample> samples;
   const auto central = Hit(origin, direction);
+  const double error_world = central ? ErrorAt(central->position) : max_error_world_;
   if (central && central->normal.dot(direction) < 0) samples.push_back(*central);
   const double depth = central ? (central->position - origin).norm() : (center_ - origin).dot(direction);
   if (!(depth > 0)) return samples;
@@ -57,19 +80,21 @@ std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& ori
     const int count = radius < 0.5 ? 6 : 10;
     for (int k = 0; k < count; ++k) {
       const double a = 2 * M_PI * (k + radius) / count;
-      const Eigen::Vector3d offset = radius * error_world_ * (std::cos(a) * e1 + std::sin(a) * e2);
+      const Eigen::Vector3d offset = radius * error_world * (std::cos(a) * e1 + std::sin(a) * e2);
       const auto sample = Hit(origin, (depth * direction + offset).normalized());
       // What lies far in front or behind is another part of the surface.
       if (!sample || sample->normal.dot(direction) >= 0) continue;
-      if (central && std::abs((sample->position - origin).norm() - depth) > 4 * error_world_) continue;
+      if (central && std::abs((sample->position - origin).norm() - depth) > 4 * error_world) continue;
       samples.push_back(*sample);
     }
   }
+  for (SurfaceSample& s : samples) s.error_world = error_world;
   return samples;
 }
 
-bool SeedSurface::Occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
-  return caster_.Occluded(from, to, 2 * error_world_);
+bool SeedSurface::Occluded(const SurfaceSample& from, const Eigen::Vector3d& to) const {
+  // Starting off the surface by its error keeps rays that graze the seed's bumps from being stopped by them.
+  return caster_.Occluded(from.position + from.error_world * from.normal, to, from.error_world);
 }
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "colmap/scene.h"
 #include "geometry/ray_caster.h"
 #include "geometry/triangle_mesh.h"
 
@@ -13,32 +14,37 @@ namespace glint {
 struct SurfaceSample {
   Eigen::Vector3d position;
   Eigen::Vector3d normal;  // unit, smoothed over the seed's facets, outward
+  double error_world = 0;  // how far the seed may be off here
 };
 
 class SeedSurface {
  public:
-  // `error_world`: how far the seed may be off.
-  SeedSurface(const TriangleMesh& mesh, double error_world);
+  // `max_error_world`: how far the seed may be off where it is worst. Between sparse points it cannot be much worse
+  // than they are apart, which bounds it locally.
+  SeedSurface(const TriangleMesh& mesh, const std::vector<ScenePoint>& points, double max_error_world);
 
-  // What rays about `direction` from `origin` hit, spread over a disc of radius error_world at the surface and facing
+  // What rays about `direction` from `origin` hit, spread over a disc as wide as the seed may be off there and facing
   // the origin. The central ray comes first if it hits. Empty: off the surface.
   std::vector<SurfaceSample> Neighbourhood(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
-  // True if the seed stands between the two points by more than it may be off.
-  bool Occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  // True if the seed stands between a surface point and another point by more than it may be off at the first.
+  bool Occluded(const SurfaceSample& from, const Eigen::Vector3d& to) const;
 
-  double error_world() const { return error_world_; }
   double diagonal() const { return diagonal_; }
 
  private:
   std::optional<SurfaceSample> Hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+
+  double ErrorAt(const Eigen::Vector3d& x) const;
 
   std::vector<Eigen::Vector3i> faces_;
   std::vector<Eigen::Vector3d> normals_;  // at the vertices
   RayCaster caster_;
   Eigen::Vector3d center_;
   double diagonal_;
-  double error_world_;
+  double max_error_world_;
+  std::vector<Eigen::Vector3d> points_;  // of the scene, at most kMaxPoints
+  double spacing_scale_;                 // for those left out
 };
 
 }  // namespace glint
