@@ -14,7 +14,7 @@ class Mat;
 namespace glint {
 
 struct DetectOptions {
-  double min_strength = 0.02;  // fraction of sensor white
+  double min_strength = 0.04;  // fraction of sensor white
   double min_contrast = 0.2;   // of the local body's brightness
   double max_size_rel = 0.15;  // fraction of the image's diagonal
   double max_tint_deg = 24;    // degrees in linear RGB

@@ -65,7 +65,6 @@ Explanation Explain(const View& view, const SeedSurface& surface, const std::vec
 struct Verdict {
   HighlightStatus status = HighlightStatus::kAccepted;
   Explanation explanation;
-  bool tested_for_paint = false;
 };
 
 Verdict Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
@@ -91,8 +90,10 @@ Verdict Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSu
   }
   const auto kept = KeptBrightness(scene, brightness, surface, lights[e.light], highlight, samples.front(),
                                    {options.min_half_change_deg, options.min_other_views});
-  verdict.tested_for_paint = kept.has_value();
-  if (kept && *kept > options.paint_ratio) verdict.status = HighlightStatus::kStaysPut;
+  if (!kept)
+    verdict.status = HighlightStatus::kTooFewViews;
+  else if (*kept > options.paint_ratio)
+    verdict.status = HighlightStatus::kStaysPut;
   return verdict;
 }
 
@@ -100,6 +101,26 @@ double Median(std::vector<double> values) {
   if (values.empty()) return 0;
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
   return values[values.size() / 2];
+}
+
+// See GateHighlights(): what is much fainter than a light's strong highlights.
+void RejectFaint(const std::vector<Highlight>& highlights, const std::vector<size_t>& judged, size_t num_lights,
+                 double min_relative_strength, std::vector<Verdict>& verdicts) {
+  std::vector<std::vector<double>> strengths(num_lights);
+  for (size_t k = 0; k < judged.size(); ++k)
+    if (verdicts[k].status == HighlightStatus::kAccepted)
+      strengths[verdicts[k].explanation.light].push_back(highlights[judged[k]].strength);
+  std::vector<double> least(num_lights, 0);
+  for (size_t l = 0; l < num_lights; ++l) {
+    if (strengths[l].empty()) continue;
+    const size_t strong = strengths[l].size() * 9 / 10;
+    std::nth_element(strengths[l].begin(), strengths[l].begin() + strong, strengths[l].end());
+    least[l] = min_relative_strength * strengths[l][strong];
+  }
+  for (size_t k = 0; k < judged.size(); ++k)
+    if (verdicts[k].status == HighlightStatus::kAccepted &&
+        highlights[judged[k]].strength < least[verdicts[k].explanation.light])
+      verdicts[k].status = HighlightStatus::kWeak;
 }
 
 GateSummary Summarise(const std::vector<Highlight>& highlights, const std::vector<Verdict>& verdicts,
@@ -117,7 +138,6 @@ GateSummary Summarise(const std::vector<Highlight>& highlights, const std::vecto
     ++summary.accepted_by_light[e.light];
     errors[e.light].push_back(e.error_deg);
     ambiguous += e.ambiguous;
-    summary.untested_for_paint += !verdicts[k].tested_for_paint;
   }
   for (auto& e : errors) summary.median_normal_error_deg.push_back(Median(std::move(e)));
   summary.ambiguous_fraction = summary.accepted > 0 ? double(ambiguous) / summary.accepted : 0;
@@ -160,6 +180,12 @@ void GateOptions::Visit(OptionVisitor& v) {
            .min = 1,
            .max = 1000},
           min_other_views);
+  v.Field({.name = "min_relative_strength",
+           .help = "Least strength, relative to the strong highlights of its light",
+           .unit = "ratio",
+           .min = 0,
+           .max = 1},
+          min_relative_strength);
   v.Field({.name = "image_memory_mb",
            .help = "Memory for small copies of all views",
            .unit = "MB",
@@ -175,8 +201,6 @@ std::string GateSummary::BriefReport() const {
   for (size_t l = 0; l < accepted_by_light.size(); ++l)
     report += fmt::format("; light {}: {} ({:.1f} deg from the seed's normals)", l, accepted_by_light[l],
                           median_normal_error_deg[l]);
-  if (untested_for_paint > 0)
-    report += fmt::format("; {} seen in too few views to tell from paint", untested_for_paint);
   return report;
 }
 
@@ -200,6 +224,7 @@ void GateHighlights(const Scene& scene, const ImageSource& images, const Triangl
     verdicts[k] = Judge(scene, brightness, surface, lights, options, highlights[judged[k]]);
     progress.Advance();
   });
+  RejectFaint(highlights, judged, lights.size(), options.min_relative_strength, verdicts);
   for (size_t k = 0; k < judged.size(); ++k) {
     Highlight& h = highlights[judged[k]];
     h.status = verdicts[k].status;

@@ -21,8 +21,9 @@ struct GateOptions {
   double max_normal_error_deg = 25;  // half vector against the seed's normals nearby
   double max_incidence_deg = 60;
   double min_half_change_deg = 8;  // views whose half vector differs by less say nothing on paint
-  double paint_ratio = 0.5;        // of the candidate's brightness over its body, in the median of the other views
+  double paint_ratio = 0.3;        // of the candidate's brightness over its body, in the median of the other views
   int min_other_views = 3;
+  double min_relative_strength = 0.3;  // of the strong ones of the same light
   int image_memory_mb = 512;
 
   void Visit(OptionVisitor& v);
@@ -31,7 +32,6 @@ struct GateOptions {
 struct GateSummary {
   size_t candidates = 0;
   size_t accepted = 0;
-  size_t untested_for_paint = 0;  // accepted without enough other views to compare with
   std::array<size_t, kNumHighlightStatuses> by_status{};
   std::vector<size_t> accepted_by_light;        // one entry a light
   std::vector<double> median_normal_error_deg;  // of the accepted ones of each light, against the seed
@@ -45,7 +45,9 @@ struct GateSummary {
 // only about right in place and normal. The light whose half vector disagrees least with a normal there is assigned.
 // Paint: for every depth along the ray within the seed's error, the brightness of the surface point in the other
 // unoccluded views in which that light would be mirrored elsewhere; if at any depth the median stays bright, it is
-// paint. `images` is streamed once into small grey copies (image_memory_mb in all).
+// paint. What is much fainter than the strong highlights of the same light is texture that slipped through: one lamp
+// on one object varies by Fresnel's factor, not by orders of magnitude. `images` is streamed once into small grey
+// copies (image_memory_mb in all).
 void GateHighlights(const Scene& scene, const ImageSource& images, const TriangleMesh& seed,
                     const std::vector<Light>& lights, const GateOptions& options, std::vector<Highlight>& highlights,
                     GateSummary* summary = nullptr, Progress& progress = Progress::Silent());

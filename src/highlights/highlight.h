@@ -21,8 +21,9 @@ enum class HighlightStatus {
   kGrazing,       // incidence above the limit
   kInconsistent,  // contradicts the neighbouring contacts in the bundle
   kNotALobe,      // flat or ragged like print, without the fall-off of a highlight
+  kTooFewViews,   // no other views could tell it from paint
 };
-inline constexpr int kNumHighlightStatuses = 11;
+inline constexpr int kNumHighlightStatuses = 12;
 
 std::string_view StatusName(HighlightStatus status);    // "accepted", "stays_put", ... for reports
 std::string_view StatusReason(HighlightStatus status);  // a plain sentence for people

@@ -44,6 +44,8 @@ const char* ReasonLetters(HighlightStatus status) {
       return "i";
     case HighlightStatus::kNotALobe:
       return "f";
+    case HighlightStatus::kTooFewViews:
+      return "v";
   }
   return "?";
 }

@@ -10,6 +10,8 @@ namespace {
 
 constexpr size_t kMaxPoints = 20000;
 constexpr size_t kNeighbours = 6;
+// A smooth surface leaves the facets between its points by much less than the points are apart.
+constexpr double kErrorOfSpread = 0.5;
 
 // Area-weighted vertex normals, smoothed over the one-ring a few times: the facets of a sparse seed are off by tens of
 // degrees one by one, much less on average.
@@ -46,7 +48,7 @@ SeedSurface::SeedSurface(const TriangleMesh& mesh, const std::vector<ScenePoint>
   spacing_scale_ = std::sqrt(1.0 / stride);
 }
 
-double SeedSurface::ErrorAt(const Eigen::Vector3d& x) const {
+double SeedSurface::SpreadAt(const Eigen::Vector3d& x) const {
   std::array<double, kNeighbours> nearest;  // squared, ascending
   nearest.fill(std::numeric_limits<double>::infinity());
   for (const auto& p : points_) {
@@ -64,14 +66,14 @@ std::optional<SurfaceSample> SeedSurface::Hit(const Eigen::Vector3d& origin, con
   const Eigen::Vector3i& f = faces_[hit->face];
   Eigen::Vector3d normal = (1 - hit->u - hit->v) * normals_[f[0]] + hit->u * normals_[f[1]] + hit->v * normals_[f[2]];
   if (normal.norm() < 1e-6) normal = hit->normal;
-  return SurfaceSample{hit->position, normal.normalized(), max_error_world_};
+  return SurfaceSample{hit->position, normal.normalized()};
 }
 
 std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& origin,
                                                       const Eigen::Vector3d& direction) const {
   std::vector<SurfaceSample> samples;
   const auto central = Hit(origin, direction);
-  const double error_world = central ? ErrorAt(central->position) : max_error_world_;
+  const double spread_world = central ? SpreadAt(central->position) : max_error_world_;
   if (central && central->normal.dot(direction) < 0) samples.push_back(*central);
   const double depth = central ? (central->position - origin).norm() : (center_ - origin).dot(direction);
   if (!(depth > 0)) return samples;
@@ -80,15 +82,18 @@ std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& ori
     const int count = radius < 0.5 ? 6 : 10;
     for (int k = 0; k < count; ++k) {
       const double a = 2 * M_PI * (k + radius) / count;
-      const Eigen::Vector3d offset = radius * error_world * (std::cos(a) * e1 + std::sin(a) * e2);
+      const Eigen::Vector3d offset = radius * spread_world * (std::cos(a) * e1 + std::sin(a) * e2);
       const auto sample = Hit(origin, (depth * direction + offset).normalized());
       // What lies far in front or behind is another part of the surface.
       if (!sample || sample->normal.dot(direction) >= 0) continue;
-      if (central && std::abs((sample->position - origin).norm() - depth) > 4 * error_world) continue;
+      if (central && std::abs((sample->position - origin).norm() - depth) > 4 * spread_world) continue;
       samples.push_back(*sample);
     }
   }
-  for (SurfaceSample& s : samples) s.error_world = error_world;
+  for (SurfaceSample& s : samples) {
+    s.spread_world = spread_world;
+    s.error_world = kErrorOfSpread * spread_world;
+  }
   return samples;
 }
 

@@ -13,8 +13,9 @@ namespace glint {
 
 struct SurfaceSample {
   Eigen::Vector3d position;
-  Eigen::Vector3d normal;  // unit, smoothed over the seed's facets, outward
-  double error_world = 0;  // how far the seed may be off here
+  Eigen::Vector3d normal;   // unit, smoothed over the seed's facets, outward
+  double spread_world = 0;  // over how wide a patch the seed's normals say something about this place
+  double error_world = 0;   // how far the seed may be off here
 };
 
 class SeedSurface {
@@ -35,7 +36,7 @@ class SeedSurface {
  private:
   std::optional<SurfaceSample> Hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
-  double ErrorAt(const Eigen::Vector3d& x) const;
+  double SpreadAt(const Eigen::Vector3d& x) const;
 
   std::vector<Eigen::Vector3i> faces_;
   std::vector<Eigen::Vector3d> normals_;  // at the vertices

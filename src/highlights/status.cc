@@ -26,6 +26,8 @@ std::string_view StatusName(HighlightStatus status) {
       return "inconsistent";
     case HighlightStatus::kNotALobe:
       return "not_a_lobe";
+    case HighlightStatus::kTooFewViews:
+      return "too_few_views";
   }
   return "unknown";
 }
@@ -54,6 +56,8 @@ std::string_view StatusReason(HighlightStatus status) {
       return "contradicts the neighbouring highlights";
     case HighlightStatus::kNotALobe:
       return "flat or ragged like print, without the fall-off of a highlight";
+    case HighlightStatus::kTooFewViews:
+      return "seen in too few other views to tell it from paint";
   }
   return "unknown";
 }
