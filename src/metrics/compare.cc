@@ -5,13 +5,35 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
-#include "metrics/nearest_on_mesh.h"
+#include "geometry/closest_point.h"
 #include "metrics/surface_samples.h"
 
 namespace glint {
 namespace {
 
 constexpr size_t kGrain = 256;
+
+struct Nearest {
+  int face;
+  Eigen::Vector3d weights;  // barycentric
+  double distance;          // world units
+};
+
+class NearestFinder {
+ public:
+  explicit NearestFinder(const TriangleMesh& mesh) : mesh_(mesh), query_(mesh) {}
+
+  Nearest Find(const Eigen::Vector3d& x) const {
+    const MeshPoint at = *query_.Find(x);
+    const Eigen::Vector3i& f = mesh_.faces[at.face];
+    const auto& v = mesh_.vertices;
+    return {at.face, Barycentric(v[f[0]], v[f[1]], v[f[2]], at.point), std::sqrt(at.squared_distance)};
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  ClosestPointQuery query_;
+};
 
 // The vertex normals of the mesh where it has them, else angle-weighted ones; zero where undefined.
 std::vector<Eigen::Vector3d> VertexNormals(const TriangleMesh& mesh) {
@@ -44,7 +66,7 @@ std::vector<double> SampledDistances(const TriangleMesh& from, const TriangleMes
   const std::vector<SurfaceSample> samples = SampleSurface(from, num_samples);
   std::vector<double> distances(samples.size());
   ParallelFor(samples.size(), kGrain, [&](size_t i) {
-    const NearestOnMesh nearest = finder.Find(samples[i].position);
+    const Nearest nearest = finder.Find(samples[i].position);
     bool counts = true;
     if (!mask.empty())
       counts = mask_is_on_from ? mask[NearestCorner(from, samples[i].face, samples[i].weights)] != 0
@@ -77,7 +99,7 @@ void MeasureAtReferenceVertices(const TriangleMesh& mesh, const TriangleMesh& re
   out.reference_distance.resize(reference.vertices.size());
   out.reference_normal_deg.resize(reference.vertices.size());
   ParallelFor(reference.vertices.size(), kGrain, [&](size_t i) {
-    const NearestOnMesh nearest = finder.Find(reference.vertices[i]);
+    const Nearest nearest = finder.Find(reference.vertices[i]);
     const Eigen::Vector3i& face = mesh.faces[nearest.face];
     Eigen::Vector3d n = Eigen::Vector3d::Zero();
     for (int k = 0; k < 3; ++k) n += nearest.weights[k] * normals[face[k]];

@@ -1,0 +1,128 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "core/check.h"
+#include "seed/scene_layout.h"
+
+namespace glint {
+namespace {
+
+using Plane = Eigen::Hyperplane<double, 3>;
+
+constexpr double kVoxelRel = 0.02;       // of the focus distance: one point a voxel counts
+constexpr double kToleranceRel = 0.012;  // of the focus distance
+constexpr double kMaxBelow = 0.08;       // share of the points that may lie below
+constexpr double kMinShare = 0.12;       // share of the points that must lie on the plane
+constexpr size_t kMinInliers = 15;
+constexpr int kTrials = 3000;
+constexpr int kSectors = 12;
+
+// One point a voxel within the focus distance: dense texture must not outvote space.
+std::vector<Eigen::Vector3d> ThinnedPoints(const Scene& scene, const std::vector<uint8_t>& use, const Focus& focus) {
+  std::vector<Eigen::Vector3d> points;
+  std::set<std::array<int64_t, 3>> taken;
+  for (size_t i = 0; i < scene.points.size(); ++i) {
+    const Eigen::Vector3d x = (scene.points[i].position - focus.center) / focus.distance;
+    if (!use[i] || !(x.norm() < 1)) continue;
+    std::array<int64_t, 3> voxel;
+    for (int k = 0; k < 3; ++k) voxel[k] = static_cast<int64_t>(std::floor(x[k] / kVoxelRel));
+    if (taken.insert(voxel).second) points.push_back(scene.points[i].position);
+  }
+  return points;
+}
+
+// Turns the plane so that most cameras are above; false unless nearly all of them are.
+bool CamerasAbove(const std::vector<Eigen::Vector3d>& cameras, double margin, Plane& plane) {
+  size_t above = 0, below = 0;
+  for (const Eigen::Vector3d& c : cameras) {
+    const double d = plane.signedDistance(c);
+    above += d > margin;
+    below += d < -margin;
+  }
+  if (below > above) {
+    std::swap(above, below);
+    plane.coeffs() = -plane.coeffs();
+  }
+  return above >= 0.95 * static_cast<double>(cameras.size());
+}
+
+// Number of points on the plane; 0 if too many lie below.
+size_t Support(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance) {
+  size_t on = 0, below = 0;
+  for (const Eigen::Vector3d& p : points) {
+    const double d = plane.signedDistance(p);
+    on += std::abs(d) < tolerance;
+    below += d < -3 * tolerance;
+  }
+  return static_cast<double>(below) > kMaxBelow * static_cast<double>(points.size()) ? 0 : on;
+}
+
+Plane FitPlane(const std::vector<Eigen::Vector3d>& points, const Plane& from, double tolerance) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> on;
+  for (const Eigen::Vector3d& p : points)
+    if (from.absDistance(p) < tolerance) on.push_back(p);
+  for (const Eigen::Vector3d& p : on) mean += p / static_cast<double>(on.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : on) scatter += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter);
+  Eigen::Vector3d normal = eigen.eigenvectors().col(0);
+  if (normal.dot(from.normal()) < 0) normal = -normal;
+  return Plane(normal, mean);
+}
+
+// The plane must reach round below the focus: points on it in most directions from the foot of the focus.
+bool Surrounds(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance, const Focus& focus) {
+  const Eigen::Vector3d foot = plane.projection(focus.center);
+  const Eigen::Vector3d u = plane.normal().unitOrthogonal(), v = plane.normal().cross(u);
+  std::set<int> sectors;
+  for (const Eigen::Vector3d& p : points) {
+    if (plane.absDistance(p) > tolerance) continue;
+    const double angle = std::atan2((p - foot).dot(v), (p - foot).dot(u));
+    sectors.insert(std::min(kSectors - 1, static_cast<int>((angle + M_PI) / (2 * M_PI) * kSectors)));
+  }
+  return sectors.size() >= kSectors * 2 / 3;
+}
+
+}  // namespace
+
+std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint8_t>& use, const Focus& focus) {
+  GLINT_CHECK_EQ(use.size(), scene.points.size());
+  if (!(focus.distance > 0)) return std::nullopt;
+  const std::vector<Eigen::Vector3d> points = ThinnedPoints(scene, use, focus);
+  if (points.size() < kMinInliers) return std::nullopt;
+  const double tolerance = kToleranceRel * focus.distance;
+  std::vector<Eigen::Vector3d> cameras;
+  for (const View& view : scene.views) cameras.push_back(view.Center());
+
+  std::mt19937 random(1);
+  auto pick = [&] { return points[random() % points.size()]; };
+  size_t best_support = 0;
+  Plane best;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Eigen::Vector3d a = pick(), b = pick(), c = pick();
+    const Eigen::Vector3d n = (b - a).cross(c - a);
+    if (n.norm() < 1e-3 * focus.distance * focus.distance) continue;  // too narrow to carry a plane
+    Plane plane(n.normalized(), a);
+    if (!CamerasAbove(cameras, 2 * tolerance, plane)) continue;
+    const size_t support = Support(points, plane, tolerance);
+    if (support > best_support) {
+      best_support = support;
+      best = plane;
+    }
+  }
+  if (best_support < kMinInliers) return std::nullopt;
+  for (int i = 0; i < 3; ++i) best = FitPlane(points, best, tolerance);
+  if (!CamerasAbove(cameras, 2 * tolerance, best)) return std::nullopt;
+  if (static_cast<double>(Support(points, best, tolerance)) < kMinShare * static_cast<double>(points.size()))
+    return std::nullopt;
+  if (best.signedDistance(focus.center) < -0.1 * focus.distance) return std::nullopt;
+  if (!Surrounds(points, best, tolerance, focus)) return std::nullopt;
+  return GroundPlane{best, tolerance};
+}
+
+}  // namespace glint
