@@ -37,7 +37,9 @@ HighlightStatus StatusOf(const Blob& blob, const LobeFit& fit, const std::option
   if (blob.unbounded || major_px > max_size_px) return HighlightStatus::kTooLarge;
   if (blob.touches_border) return HighlightStatus::kAtBorder;
   if (tint_deg && *tint_deg > options.max_tint_deg) return HighlightStatus::kTinted;
-  if (fit.ok && fit.profile_error > options.max_profile_error) return HighlightStatus::kNotALobe;
+  // Of a saturated blob only a thin rim is left to judge by.
+  if (fit.ok && fit.saturated_fraction < 0.05 && fit.profile_error > options.max_profile_error)
+    return HighlightStatus::kNotALobe;
   return HighlightStatus::kAccepted;
 }
 

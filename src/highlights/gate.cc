@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -62,6 +63,22 @@ Explanation Explain(const View& view, const SeedSurface& surface, const std::vec
   return best;
 }
 
+// KeptBrightness() where the ray meets the seed and at the depth of the sample that explains the highlight: at a
+// silhouette the ray may have missed the surface that it belongs to.
+std::optional<double> MostKept(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
+                               const Light& light, const GateOptions& options, const Highlight& highlight,
+                               const SurfaceSample& hit, const SurfaceSample& explaining) {
+  const PaintTestOptions paint = {options.min_half_change_deg, options.min_other_views};
+  const auto at_hit = KeptBrightness(scene, brightness, surface, light, highlight, hit, paint);
+  const View& view = scene.views[highlight.view];
+  SurfaceSample moved = explaining;
+  moved.position = view.Center() + *view.RayThrough(highlight.px) * (explaining.position - view.Center()).norm();
+  if ((moved.position - hit.position).norm() < hit.error_world) return at_hit;
+  const auto at_explaining = KeptBrightness(scene, brightness, surface, light, highlight, moved, paint);
+  if (!at_hit || !at_explaining) return at_hit ? at_hit : at_explaining;
+  return std::max(*at_hit, *at_explaining);
+}
+
 struct Verdict {
   HighlightStatus status = HighlightStatus::kAccepted;
   Explanation explanation;
@@ -88,8 +105,7 @@ Verdict Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSu
     verdict.status = HighlightStatus::kGrazing;
     return verdict;
   }
-  const auto kept = KeptBrightness(scene, brightness, surface, lights[e.light], highlight, samples.front(),
-                                   {options.min_half_change_deg, options.min_other_views});
+  const auto kept = MostKept(scene, brightness, surface, lights[e.light], options, highlight, samples.front(), e.at);
   if (!kept)
     verdict.status = HighlightStatus::kTooFewViews;
   else if (*kept > options.paint_ratio)

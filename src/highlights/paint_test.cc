@@ -10,7 +10,8 @@ namespace glint {
 namespace {
 
 constexpr double kMaxViewAngleDeg = 72;  // between the seed's normal and a view that is compared with
-constexpr int kMaxDepths = 41;
+constexpr int kMaxDepths = 81;
+constexpr double kMaxStretch = 3;
 constexpr size_t kEnoughViews = 6;
 
 // Views in which the surface point can be seen and the light is mirrored elsewhere.
@@ -43,18 +44,17 @@ std::vector<size_t> ViewsToCompare(const Scene& scene, const ViewBrightness& bri
 
 // Depth offsets along the ray within the seed's error, fine enough that no view skips more than `step_px`.
 std::vector<Eigen::Vector3d> PlacesAlongRay(const Scene& scene, const std::vector<size_t>& views,
-                                            const SurfaceSample& at, const Eigen::Vector3d& direction,
-                                            double error_world, double step_px) {
+                                            const SurfaceSample& at, const Eigen::Vector3d& direction, double reach,
+                                            double step_px) {
   double widest = 0;
   for (size_t j : views) {
-    const auto near = scene.views[j].Project(at.position - error_world * direction);
-    const auto far = scene.views[j].Project(at.position + error_world * direction);
+    const auto near = scene.views[j].Project(at.position - reach * direction);
+    const auto far = scene.views[j].Project(at.position + reach * direction);
     if (near && far) widest = std::max(widest, (*far - *near).norm());
   }
   const int half_count = std::clamp(static_cast<int>(std::ceil(0.5 * widest / step_px)), 1, kMaxDepths / 2);
   std::vector<Eigen::Vector3d> places;
-  for (int k = -half_count; k <= half_count; ++k)
-    places.push_back(at.position + error_world * k / half_count * direction);
+  for (int k = -half_count; k <= half_count; ++k) places.push_back(at.position + reach * k / half_count * direction);
   return places;
 }
 
@@ -79,7 +79,9 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
   double kept = 0;
   bool compared = false;
   std::vector<double> ratios;
-  for (const Eigen::Vector3d& place : PlacesAlongRay(scene, views, at, *ray, at.error_world, 1.5 * radius_px)) {
+  // An error across the surface is a longer one along a slanting ray.
+  const double reach = at.error_world / std::max(-ray->dot(at.normal), 1 / kMaxStretch);
+  for (const Eigen::Vector3d& place : PlacesAlongRay(scene, views, at, *ray, reach, 1.5 * radius_px)) {
     ratios.clear();
     for (size_t j : views) {
       const auto px = scene.views[j].Project(place);
