@@ -14,8 +14,8 @@ namespace glint {
 
 // A point known to lie on the surface, with the current surface's normal there. World units.
 struct SurfacePoint {
-  Eigen::Vector3d position;
-  Eigen::Vector3d normal;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double sigma = 0;  // standard deviation of the position
 };
 

@@ -28,11 +28,11 @@ struct LevelSetOptions {
 
 // A place where the surface's position and normal are known. Lengths in units of the object's diagonal.
 struct OrientedPoint {
-  Eigen::Vector3d position;
-  Eigen::Vector3d normal;
-  double sigma_position;
-  double sigma_normal;  // radians
-  double reach;         // radius within which it explains the surface, so that the seed need not be kept
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  double sigma_position = 0;
+  double sigma_normal = 0;  // radians
+  double reach = 0;         // radius within which it explains the surface, so that the seed need not be kept
 };
 
 struct StepSummary {
