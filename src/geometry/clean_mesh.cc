@@ -37,7 +37,7 @@ std::vector<uint32_t> Representatives(const std::vector<Eigen::Vector3d>& vertic
     while (end < order.size() && order[end].first == order[begin].first) ++end;
     for (size_t i = begin; i < end; ++i) {
       size_t j = begin;
-      while (vertices[order[j].second] != vertices[order[i].second]) ++j;
+      while (j < i && vertices[order[j].second] != vertices[order[i].second]) ++j;  // NaN differs from itself
       representative[order[i].second] = order[j].second;
     }
     begin = end;

@@ -17,12 +17,12 @@ struct CornersByVertex {
 
 int Lower(const TriangleMesh& mesh, uint32_t corner) {
   const Eigen::Vector3i& face = mesh.faces[corner / 3];
-  return std::min(face[corner % 3], face[(corner + 1) % 3]);
+  return std::min(face[corner % 3], face[(corner % 3 + 1) % 3]);
 }
 
 int Higher(const TriangleMesh& mesh, uint32_t corner) {
   const Eigen::Vector3i& face = mesh.faces[corner / 3];
-  return std::max(face[corner % 3], face[(corner + 1) % 3]);
+  return std::max(face[corner % 3], face[(corner % 3 + 1) % 3]);
 }
 
 CornersByVertex SortByLowerVertex(const TriangleMesh& mesh) {
