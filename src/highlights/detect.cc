@@ -5,7 +5,6 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 
 #include "core/check.h"
 #include "highlights/brightness.h"
@@ -32,15 +31,13 @@ std::vector<cv::Mat> MaskPyramid(const cv::Mat& mask, const std::vector<cv::Mat>
   return levels;
 }
 
-HighlightStatus StatusOf(const Blob& blob, const LobeFit& fit, const std::optional<double>& tint_deg, double major_px,
-                         double max_size_px, const DetectOptions& options) {
+// What is known before the peak is fitted.
+HighlightStatus FirstLook(const cv::Mat& image, const Blob& blob, double major_px, double max_size_px,
+                          const DetectOptions& options) {
   if (blob.unbounded || major_px > max_size_px) return HighlightStatus::kTooLarge;
   if (blob.touches_border) return HighlightStatus::kAtBorder;
-  if (tint_deg && *tint_deg > options.max_tint_deg) return HighlightStatus::kTinted;
-  // Of a saturated blob only a thin rim is left to judge by.
-  if (fit.ok && fit.saturated_fraction < 0.05 && fit.profile_error > options.max_profile_error)
-    return HighlightStatus::kNotALobe;
-  return HighlightStatus::kAccepted;
+  const auto tint_deg = TintDegrees(image, blob, options.saturation);
+  return tint_deg && *tint_deg > options.max_tint_deg ? HighlightStatus::kTinted : HighlightStatus::kAccepted;
 }
 
 Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, const cv::Mat& mask, uint32_t view,
@@ -53,10 +50,10 @@ Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, c
   h.strength = blob.peak_value - blob.body;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(h.moments_px);
   // Half height lies two standard deviations from the centre.
-  const double major_px = 2 * std::sqrt(axes.eigenvalues()[1]);
+  h.status = FirstLook(image, blob, 2 * std::sqrt(axes.eigenvalues()[1]), max_size_px, options);
 
   LobeFit fit;
-  if (!blob.unbounded)
+  if (h.status == HighlightStatus::kAccepted)
     fit = FitLobe(map, mask, blob.centroid, blob.moments, blob.body, blob.peak_value, options.saturation);
   const Eigen::Vector2d peak = fit.ok ? fit.peak : blob.centroid;
   const Eigen::Matrix2d covariance = fit.ok ? fit.covariance : Eigen::Matrix2d(blob.moments / 2);
@@ -65,7 +62,9 @@ Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, c
   h.covariance_px = covariance * scale * scale + 0.03 * 0.03 * h.moments_px +
                     options.position_floor_px * options.position_floor_px * Eigen::Matrix2d::Identity();
   h.saturated_fraction = fit.saturated_fraction;
-  h.status = StatusOf(blob, fit, TintDegrees(image, blob, options.saturation), major_px, max_size_px, options);
+  // Of a saturated blob only a thin rim is left to judge by.
+  if (fit.ok && fit.saturated_fraction < 0.05 && fit.profile_error > options.max_profile_error)
+    h.status = HighlightStatus::kNotALobe;
   return h;
 }
 

@@ -15,7 +15,8 @@ using Normal = Eigen::Matrix<double, kNumParams, kNumParams>;
 
 constexpr double kHalfHeightQ = 0.41421356;  // (1 + q)^-2 = 1/2
 constexpr double kReach = 3.4;               // radius of the fit in standard deviations of the blob (half height: 2)
-constexpr int kMaxIterations = 25;
+constexpr int kMaxIterations = 20;
+constexpr int kManyPixels = 400;
 
 struct Sample {
   Eigen::Vector2d at;
@@ -28,15 +29,15 @@ struct Problem {
   std::vector<Sample> samples;
   double body_prior, body_sigma;
   double log_amplitude_prior;
+  bool sparse;  // every other pixel left out
 };
 
 // Value and gradient of the model; q = (a dx + c dy)² + (e dy)².
-double Evaluate(const Params& p, const Eigen::Vector2d& at, Params* gradient) {
+double Evaluate(const Params& p, double amplitude, const Eigen::Vector2d& at, Params* gradient) {
   const double dx = at.x() - p[2], dy = at.y() - p[3];
   const double u = p[4] * dx + p[5] * dy, v = p[6] * dy;
   const double q = u * u + v * v;
   const double f = 1 / ((1 + q) * (1 + q));
-  const double amplitude = std::exp(p[0]);
   if (gradient) {
     const double df = -2 * amplitude * f / (1 + q);  // by q
     *gradient << amplitude * f, 1, df * -2 * u * p[4], df * -2 * (u * p[5] + v * p[6]), df * 2 * u * dx,
@@ -47,30 +48,37 @@ double Evaluate(const Params& p, const Eigen::Vector2d& at, Params* gradient) {
 
 // Normal equations of the weighted residuals and the robust cost.
 double Linearise(const Problem& problem, const Params& p, double scale, Normal* hessian, Params* rhs) {
-  double cost = 0;
+  // The sum of log(1 + ratio²), as the logarithm of products that cannot overflow.
+  double log_sum = 0, product = 1;
   if (hessian) {
     hessian->setZero();
     rhs->setZero();
   }
   Params g;
+  const double amplitude = std::exp(p[0]);
   for (const Sample& s : problem.samples) {
-    double r = (Evaluate(p, s.at, hessian ? &g : nullptr) - s.value) / s.sigma;
+    const double r = (Evaluate(p, amplitude, s.at, hessian ? &g : nullptr) - s.value) / s.sigma;
     if (s.saturated && r > 0) continue;  // at least that bright
     const double ratio = r / scale;
-    cost += scale * scale * std::log1p(ratio * ratio);
+    product *= 1 + ratio * ratio;
+    if (product > 1e100) {
+      log_sum += std::log(product);
+      product = 1;
+    }
     if (!hessian) continue;
     const double w = 1 / (1 + ratio * ratio) / (s.sigma * s.sigma);
     hessian->noalias() += w * g * g.transpose();
     *rhs -= w * r * s.sigma * g;
   }
+  double cost = scale * scale * (log_sum + std::log(product));
   const double body = (p[1] - problem.body_prior) / problem.body_sigma;
-  const double amplitude = (p[0] - problem.log_amplitude_prior) / 2;
-  cost += body * body + amplitude * amplitude;
+  const double log_amplitude = (p[0] - problem.log_amplitude_prior) / 2;
+  cost += body * body + log_amplitude * log_amplitude;
   if (hessian) {
     (*hessian)(1, 1) += 1 / (problem.body_sigma * problem.body_sigma);
     (*rhs)[1] -= body / problem.body_sigma;
     (*hessian)(0, 0) += 0.25;
-    (*rhs)[0] -= amplitude / 2;
+    (*rhs)[0] -= log_amplitude / 2;
   }
   return cost;
 }
@@ -78,8 +86,10 @@ double Linearise(const Problem& problem, const Params& p, double scale, Normal* 
 // Residuals of the pixels that count at the current parameters, in units of their sigma.
 std::vector<double> AbsoluteResiduals(const Problem& problem, const Params& p) {
   std::vector<double> residuals;
+  residuals.reserve(problem.samples.size());
+  const double amplitude = std::exp(p[0]);
   for (const Sample& s : problem.samples) {
-    const double r = (Evaluate(p, s.at, nullptr) - s.value) / s.sigma;
+    const double r = (Evaluate(p, amplitude, s.at, nullptr) - s.value) / s.sigma;
     if (!s.saturated || r < 0) residuals.push_back(std::abs(r));
   }
   return residuals;
@@ -133,8 +143,10 @@ Problem Gather(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& c
   const int x1 = std::min(map.cols - 1, static_cast<int>(std::floor(centroid.x() + rx)));
   const int y0 = std::max(0, static_cast<int>(std::ceil(centroid.y() - ry)));
   const int y1 = std::min(map.rows - 1, static_cast<int>(std::floor(centroid.y() + ry)));
+  // A few hundred pixels fix seven parameters; of more every other one is left out, as on a chessboard.
+  const bool sparse = problem.sparse = (x1 - x0 + 1) * (y1 - y0 + 1) > kManyPixels;
   for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x) {
+    for (int x = x0 + (sparse ? (x0 + y) % 2 : 0); x <= x1; x += sparse ? 2 : 1) {
       if (!mask.empty() && !mask.ptr<uint8_t>(y)[x]) continue;
       const Eigen::Vector2d at(x, y);
       if ((at - centroid).dot(inverse * (at - centroid)) > kReach * kReach) continue;
@@ -173,19 +185,19 @@ LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& 
   const Normal inverse = hessian.ldlt().solve(Normal::Identity());
   if (!inverse.allFinite()) return fit;
 
+  fit.amplitude = std::exp(p[0]);
   double sum = 0, count = 0;
   for (const Sample& s : problem.samples) {
     if (s.saturated) continue;
-    const double r = std::abs(Evaluate(p, s.at, nullptr) - s.value);
+    const double r = std::abs(Evaluate(p, fit.amplitude, s.at, nullptr) - s.value);
     sum += std::min(r, 0.5 * (peak_value - body));
     ++count;
   }
   fit.ok = true;
   fit.peak = p.segment<2>(2);
   // Residuals of neighbouring pixels go together (blur, JPEG, shape): about four pixels make one measurement.
-  fit.covariance = 4 * scale * scale * inverse.block<2, 2>(2, 2);
+  fit.covariance = (problem.sparse ? 2 : 4) * scale * scale * inverse.block<2, 2>(2, 2);
   fit.covariance = (0.5 * (fit.covariance + fit.covariance.transpose())).eval();
-  fit.amplitude = std::exp(p[0]);
   fit.body = p[1];
   fit.profile_error = sum / std::max(count, 1.0) / (peak_value - body);
   fit.saturated_fraction = double(num_saturated) / problem.samples.size();

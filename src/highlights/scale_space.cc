@@ -15,6 +15,7 @@ constexpr int kWindow = 40;           // half side of the window a blob may fill
 constexpr double kRingRadius = 11;    // where the surroundings are sampled, level pixels
 constexpr double kMaxMinorSigma = 3;  // wider ones are left to the next level
 
+constexpr size_t kMaxPixels = 900;  // a streak as wide as kMaxMinorSigma across the window
 constexpr uint16_t kWhite = 65535;
 
 struct Peak {
@@ -59,12 +60,18 @@ cv::Mat Surroundings(const std::vector<cv::Mat>& pyramid, int level) {
 
 // Median brightness on a ring around the peak; pixels off the image or the mask are left out.
 double BodyBrightness(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2i& at) {
-  std::array<uint16_t, 24> samples;
+  static const auto ring = [] {
+    std::array<Eigen::Vector2i, 24> offsets;
+    for (size_t k = 0; k < offsets.size(); ++k) {
+      const double a = 2 * M_PI * k / offsets.size();
+      offsets[k] = Eigen::Vector2d(kRingRadius * std::cos(a), kRingRadius * std::sin(a)).array().round().cast<int>();
+    }
+    return offsets;
+  }();
+  std::array<uint16_t, ring.size()> samples;
   size_t n = 0;
-  for (size_t k = 0; k < samples.size(); ++k) {
-    const double a = 2 * M_PI * k / samples.size();
-    const int x = at.x() + static_cast<int>(std::lround(kRingRadius * std::cos(a)));
-    const int y = at.y() + static_cast<int>(std::lround(kRingRadius * std::sin(a)));
+  for (const Eigen::Vector2i& offset : ring) {
+    const int x = at.x() + offset.x(), y = at.y() + offset.y();
     if (x < 0 || y < 0 || x >= map.cols || y >= map.rows) continue;
     if (!mask.empty() && !mask.ptr<uint8_t>(y)[x]) continue;
     samples[n++] = map.ptr<uint16_t>(y)[x];
@@ -93,7 +100,7 @@ class Flood {
           continue;
         }
         const Eigen::Vector2i offset = q - blob.peak;
-        if (std::abs(offset.x()) > kWindow || std::abs(offset.y()) > kWindow) {
+        if (std::abs(offset.x()) > kWindow || std::abs(offset.y()) > kWindow || blob.pixels.size() > kMaxPixels) {
           blob.unbounded = true;
           return;
         }
