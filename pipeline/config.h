@@ -8,6 +8,8 @@
 #include "core/options.h"
 #include "highlights/detect.h"
 #include "highlights/gate.h"
+#include "pipeline/given_mesh.h"
+#include "refine/refine.h"
 
 namespace glint {
 
@@ -20,8 +22,10 @@ struct OutputOptions {
 };
 
 struct Config {
+  GivenMeshOptions given_mesh;
   DetectOptions detect;
   GateOptions gate;
+  RefineOptions refine;
   OutputOptions output;
   void Visit(OptionVisitor& v);
 };

@@ -1,10 +1,14 @@
 // The program `glint`: reads the command line, runs one command, and turns what went wrong into an exit code:
 // 0 done, 2 bad input or configuration, 3 no honest result, 1 a bug, 128 + signal when asked to stop.
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <algorithm>
+#include <cctype>
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <opencv2/core/utility.hpp>
+#include <string>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -20,10 +24,27 @@ constexpr const char* kAbout =
     "Glint turns specular highlights in the photographs of a COLMAP project into measurements of the surface,\n"
     "and refines the mesh with them.";
 
+// An argument as a shell reads it back.
+std::string Quoted(const std::string& argument) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) || std::string_view("_-./=:,+@%").find(c) != std::string_view::npos;
+  };
+  if (!argument.empty() && std::all_of(argument.begin(), argument.end(), plain)) return argument;
+  std::string quoted = "'";
+  for (char c : argument) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
 void DeclareCommands(CLI::App& app, glint::CommandLine& line) {
   app.set_version_flag("--version", "glint " GLINT_VERSION);
   app.require_subcommand(1);
   app.fallthrough(false);
+  glint::AddRunCommand(app, line);
+  glint::AddSynthCommand(app, line);
+  glint::AddDetectCommand(app, line);
+  glint::AddSdfCommand(app, line);
+  glint::AddMeshCommand(app, line);
+  glint::AddCompareCommand(app, line);
   glint::AddConfigCommand(app, line);
 }
 
@@ -31,6 +52,7 @@ int RunAction(const glint::CommandLine& line) {
   glint::Terminal terminal(line.quiet ? glint::Verbosity::kQuiet : glint::Verbosity::kNormal);
   const glint::InterruptGuard interrupts;
   const glint::ThreadLimit threads(line.threads);
+  cv::setNumThreads(1);  // images are worked on in parallel; OpenCV's own threads would heed no limit
   try {
     line.action(terminal);
     terminal.Finish();
@@ -61,6 +83,7 @@ int RunAction(const glint::CommandLine& line) {
 int main(int argc, char** argv) {
   CLI::App app(kAbout, "glint");
   glint::CommandLine line;
+  for (int i = 0; i < argc; ++i) line.text += (i > 0 ? " " : "") + Quoted(argv[i]);
   DeclareCommands(app, line);
   try {
     app.parse(argc, argv);

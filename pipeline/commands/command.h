@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 namespace CLI {
 class App;
@@ -15,6 +16,7 @@ class Terminal;
 struct CommandLine {
   int threads = 0;  // 0: as many as the machine has
   bool quiet = false;
+  std::string text;  // as typed
   std::function<void(Terminal&)> action;
 };
 

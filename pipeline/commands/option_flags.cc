@@ -15,6 +15,12 @@ std::string FlagName(std::string name) {
   return name;
 }
 
+std::string TypeName(const OptionItem& item) {
+  if (std::holds_alternative<double*>(item.value)) return "NUMBER";
+  if (std::holds_alternative<int*>(item.value)) return "INTEGER";
+  return std::holds_alternative<std::string*>(item.value) ? "TEXT" : "[NUMBERS]";
+}
+
 void AddFlag(CLI::App& command, const OptionItem& item) {
   const std::string name = FlagName(item.path);
   const std::string constraint = DescribeConstraint(item);
@@ -29,7 +35,9 @@ void AddFlag(CLI::App& command, const OptionItem& item) {
     if (!ParseValue(item, text))
       throw CLI::ValidationError("--" + name, fmt::format("expected {}, found \"{}\"", ExpectedValue(item), text));
   };
-  command.add_option_function<std::string>("--" + name, set, help)->default_str(FormatValue(item));
+  command.add_option_function<std::string>("--" + name, set, help)
+      ->default_str(FormatValue(item))
+      ->type_name(TypeName(item));
 }
 
 }  // namespace

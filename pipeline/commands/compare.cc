@@ -1,0 +1,111 @@
+// glint compare: how far a mesh is from a reference.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "colmap/project.h"
+#include "colmap/scene.h"
+#include "core/error.h"
+#include "io/mesh_io.h"
+#include "light/light_io.h"
+#include "metrics/swept_region.h"
+#include "pipeline/commands/command.h"
+#include "pipeline/commands/option_flags.h"
+#include "pipeline/comparison.h"
+#include "pipeline/terminal.h"
+
+namespace glint {
+namespace {
+
+struct Arguments {
+  std::string mesh, reference, before, project, lights, transform, region;
+  bool json = false;
+  CompareOptions options;
+  OptionTable table{options};
+};
+
+void AddWithComplement(const std::string& name, const std::string& rest, std::vector<uint8_t> mask,
+                       std::vector<Region>& regions) {
+  std::vector<uint8_t> complement(mask.size());
+  std::transform(mask.begin(), mask.end(), complement.begin(), [](uint8_t in) { return in ? 0 : 1; });
+  regions.push_back({name, std::move(mask)});
+  regions.push_back({rest, std::move(complement)});
+}
+
+Region AttributeRegion(const Arguments& arguments, const TriangleMesh& reference) {
+  for (const auto& [name, values] : reference.scalars) {
+    if (name != arguments.region) continue;
+    Region region{arguments.region + " > 0", std::vector<uint8_t>(values.size())};
+    std::transform(values.begin(), values.end(), region.mask.begin(), [](float v) { return v > 0; });
+    return region;
+  }
+  std::string known;
+  for (const auto& [name, values] : reference.scalars) known += " " + name;
+  throw InputError(
+      arguments.reference, "--region " + arguments.region,
+      known.empty() ? "the reference has no attributes" : "expected an attribute of the reference:" + known);
+}
+
+std::vector<Region> MakeRegions(const Arguments& arguments, const TriangleMesh& reference) {
+  std::vector<Region> regions;
+  if (!arguments.project.empty()) {
+    const Scene scene = MakeScene(ReadModel(FindProject(arguments.project).model));
+    AddWithComplement("swept region", "outside the swept region",
+                      SweptRegion(reference, scene, ReadLights(arguments.lights)), regions);
+  }
+  if (!arguments.region.empty()) {
+    Region region = AttributeRegion(arguments, reference);
+    const std::string name = region.name;
+    AddWithComplement(name, "not " + name, std::move(region.mask), regions);
+  }
+  return regions;
+}
+
+void Compare(Arguments& arguments, Terminal& terminal) {
+  CheckOptions(arguments.options);
+  TriangleMesh reference = ReadMesh(arguments.reference);
+  EnsureNormals(reference);
+  const std::vector<Region> regions = MakeRegions(arguments, reference);
+  std::vector<Candidate> candidates;
+  for (const std::string& path : {arguments.before, arguments.mesh}) {
+    if (path.empty()) continue;
+    Candidate candidate{path, ReadMesh(path), {}};
+    if (!arguments.transform.empty()) Transform(ReadSimilarity(arguments.transform), candidate.mesh);
+    candidate.comparison = CompareMeshes(candidate.mesh, reference, arguments.options, {}, terminal);
+    candidates.push_back(std::move(candidate));
+  }
+  terminal.Finish();
+  fmt::print("{}", arguments.json ? ComparisonJson(candidates, regions) : ComparisonTable(candidates, regions));
+}
+
+}  // namespace
+
+void AddCompareCommand(CLI::App& app, CommandLine& line) {
+  CLI::App* command =
+      app.add_subcommand("compare", "Accuracy, completeness, Chamfer distance, F-score and normal error");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("MESH", arguments->mesh, "The mesh to measure")->required();
+  command->add_option("REFERENCE", arguments->reference, "The truth, in the same frame")->required();
+  command->add_option("--before", arguments->before, "Measure this mesh too, in a column beside it (the seed)");
+  auto* project = command->add_option(
+      "--project", arguments->project,
+      "Also measure over the swept region (where a highlight passes in some view of this project) and outside it");
+  auto* lights = command->add_option("--lights", arguments->lights, "The true lights, for --project");
+  project->needs(lights);
+  lights->needs(project);
+  command->add_option("--region", arguments->region,
+                      "Also measure where this attribute of the reference's vertices is positive");
+  command->add_option("--transform", arguments->transform,
+                      "JSON with scale, R, t: x_in_reference = scale R x + t is applied to the meshes first");
+  command->add_flag("--json", arguments->json, "Print JSON");
+  AddOptionFlags(*command, arguments->table);
+  AddCommonOptions(*command, line);
+  command->callback(
+      [arguments, &line] { line.action = [arguments](Terminal& terminal) { Compare(*arguments, terminal); }; });
+}
+
+}  // namespace glint

@@ -1,0 +1,43 @@
+// A mesh against the truth, as a whole and by regions: what `glint compare` prints.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+#include "metrics/compare.h"
+
+namespace glint {
+
+// A part of the reference, one flag a vertex.
+struct Region {
+  std::string name;
+  std::vector<uint8_t> mask;
+};
+
+// A mesh that is measured: `mesh` as given, or the seed it came from.
+struct Candidate {
+  std::string name;
+  TriangleMesh mesh;
+  MeshComparison comparison;
+};
+
+// x_in_reference = scale * R * x + t, read from JSON with the keys "scale", "R" (3 rows of 3) and "t".
+// Throws InputError naming file and key.
+Eigen::Affine3d ReadSimilarity(const std::filesystem::path& path);
+
+// Positions and normals through a similarity.
+void Transform(const Eigen::Affine3d& similarity, TriangleMesh& mesh);
+
+// Unit vertex normals weighted by the incident angles, where the mesh has none of its own.
+void EnsureNormals(TriangleMesh& mesh);
+
+// A table for people: every candidate a column, every measure a row, lengths in % of the reference's diagonal.
+std::string ComparisonTable(const std::vector<Candidate>& candidates, const std::vector<Region>& regions);
+
+// The same for programs.
+std::string ComparisonJson(const std::vector<Candidate>& candidates, const std::vector<Region>& regions);
+
+}  // namespace glint

@@ -1,0 +1,214 @@
+#include "pipeline/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "colmap/project.h"
+#include "colmap/scene.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "io/mesh_io.h"
+#include "io/project_images.h"
+#include "io/vdb_io.h"
+#include "light/light_io.h"
+#include "pipeline/artifacts.h"
+#include "pipeline/image_stages.h"
+#include "pipeline/memory.h"
+#include "pipeline/report.h"
+#include "pipeline/seed_stage.h"
+#include "pipeline/workspace.h"
+
+namespace glint {
+namespace {
+
+// One run from project to mesh. Every stage before refinement leaves its result in the workspace and hands on what it
+// reads back from there, so that a run that goes on from a later stage sees the very same values.
+class Flow {
+ public:
+  Flow(const RunArguments& arguments, const Config& config, Terminal& terminal)
+      : arguments_(arguments), config_(config), terminal_(terminal), out_(arguments.out) {}
+
+  RunSummary Run() {
+    Prepare();
+    ReadProject();
+    Stage(RunStage::kSeed, [&] { MakeSeed(); });
+    const TriangleMesh seed = ReadMesh(out_.Seed());
+    summary_.diagonal_world = Diagonal(seed);
+    const std::vector<uint8_t> point_used = ReadFlags(out_.Stages() / "points_on_object.txt", scene_.points.size());
+    summary_.num_points_used = point_used.size() - std::count(point_used.begin(), point_used.end(), 0);
+    CheckRefineMemory(seed, config_.refine, config_.output.memory_fraction);
+
+    std::vector<Highlight> highlights;
+    if (config_.refine.use_highlights) {
+      Stage(RunStage::kDetect, [&] { Detect(); });
+      highlights = ReadHighlights(out_.Stages() / "candidates.json", scene_.views.size());
+      if (lights_.empty()) GiveUpWithoutLights(highlights);
+      Stage(RunStage::kGate, [&] { Gate(seed, highlights); });
+      highlights = ReadHighlights(out_.Stages() / "highlights.json", scene_.views.size());
+      RequireAccepted(highlights);
+    }
+    RefineResult refined;
+    Stage(RunStage::kRefine, [&] {
+      refined = Refine({scene_, seed, point_used, highlights, lights_}, config_.refine, terminal_);
+    });
+    Timed("write", [&] { WriteResults(refined); });
+    Report("done");
+    return summary_;
+  }
+
+ private:
+  void Prepare();
+  void ReadProject();
+  void MakeSeed();
+  void Detect();
+  void Gate(const TriangleMesh& seed, std::vector<Highlight> highlights);
+  [[noreturn]] void GiveUp(const std::vector<Highlight>& highlights, const std::string& why);
+  [[noreturn]] void GiveUpWithoutLights(const std::vector<Highlight>& candidates);
+  void RequireAccepted(const std::vector<Highlight>& highlights);
+  void WriteResults(const RefineResult& refined);
+  void WriteHighlightPictures(const std::vector<Highlight>& highlights);
+  void Report(const std::string& outcome);
+
+  // Runs a stage unless the user goes on from a later one.
+  template <class Work>
+  void Stage(RunStage stage, const Work& work) {
+    const std::string name(kRunStageNames[static_cast<size_t>(stage)]);
+    if (stage < arguments_.from) {
+      summary_.times.push_back({name, 0, true});
+      return;
+    }
+    Timed(name, work);
+  }
+
+  template <class Work>
+  void Timed(const std::string& name, const Work& work) {
+    terminal_.ThrowIfCancelled();
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    terminal_.Finish();
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    summary_.times.push_back({name, seconds.count(), false});
+  }
+
+  void Note(const std::string& note) {
+    summary_.notes.push_back(note);
+    terminal_.Info(note);
+  }
+
+  const RunArguments& arguments_;
+  const Config& config_;
+  Terminal& terminal_;
+  const Workspace out_;
+  RunSummary summary_;
+  Scene scene_;
+  std::unique_ptr<ProjectImages> images_;
+  std::vector<Light> lights_;
+};
+
+void Flow::Prepare() {
+  out_.RemoveResults();
+  terminal_.LogTo(out_.Log());
+  summary_.command = arguments_.command;
+  if (!arguments_.lights.empty()) lights_ = ReadLights(arguments_.lights);
+  summary_.lights_given = lights_;
+  WriteFileAtomically(out_.Config(), ConfigYaml(config_, "The options of this run, as resolved."));
+}
+
+void Flow::ReadProject() {
+  Timed("read", [&] {
+    const ProjectPaths paths = FindProject(arguments_.project, arguments_.images, arguments_.masks);
+    for (const std::string& note : paths.notes) Note(note);
+    const Model model = ReadModel(paths.model);
+    for (const std::string& warning : model.warnings) terminal_.Warn(warning);
+    scene_ = MakeScene(model);
+    summary_.model = paths.model;
+    summary_.images = paths.images;
+    summary_.num_views = scene_.views.size();
+    summary_.num_points = scene_.points.size();
+    terminal_.Info(
+        fmt::format("{}: {} images, {} points", paths.model.string(), scene_.views.size(), scene_.points.size()));
+    images_ = std::make_unique<ProjectImages>(scene_, paths, terminal_);
+    summary_.num_missing_images = images_->missing().size();
+  });
+}
+
+void Flow::MakeSeed() {
+  const SeedStageResult seed = RunSeedStage(scene_, *images_, arguments_.mesh, config_, terminal_);
+  for (const std::string& note : seed.notes) Note(note);
+  for (const std::string& warning : seed.warnings) terminal_.Warn(warning);
+  WriteMesh(out_.Seed(), seed.mesh);
+  WriteFlags(out_.Stages() / "points_on_object.txt", seed.point_used);
+  summary_.seed_report = seed.report;
+}
+
+void Flow::Detect() {
+  WriteHighlights(out_.Stages() / "candidates.json", DetectInAllViews(scene_, *images_, config_.detect, terminal_));
+}
+
+void Flow::Gate(const TriangleMesh& seed, std::vector<Highlight> highlights) {
+  GateHighlights(scene_, *images_, seed, lights_, config_.gate, highlights, &summary_.gate, terminal_);
+  WriteHighlights(out_.Stages() / "highlights.json", highlights);
+  terminal_.Finish();
+  terminal_.Info(summary_.gate.BriefReport());
+}
+
+void Flow::RequireAccepted(const std::vector<Highlight>& highlights) {
+  const auto accepted = std::count_if(highlights.begin(), highlights.end(),
+                                      [](const Highlight& h) { return h.status == HighlightStatus::kAccepted; });
+  if (highlights.empty()) GiveUp(highlights, "no highlights found in any image");
+  if (accepted == 0)
+    GiveUp(highlights, fmt::format("none of the {} candidates is a highlight of the given lights", highlights.size()));
+}
+
+void Flow::GiveUpWithoutLights(const std::vector<Highlight>& candidates) {
+  GiveUp(
+      candidates,
+      candidates.empty()
+          ? "no highlights found in any image"
+          : fmt::format("the lights are not known: give them with --lights FILE ({} candidate highlights were found)",
+                        candidates.size()));
+}
+
+// What was found so far is written, for the user to see why there is no result.
+void Flow::GiveUp(const std::vector<Highlight>& highlights, const std::string& why) {
+  WriteHighlightPictures(highlights);
+  Report(why);
+  throw NoResultError(fmt::format("{}; what was found is in {}", why, out_.root().string()));
+}
+
+void Flow::WriteHighlightPictures(const std::vector<Highlight>& highlights) {
+  for (const Highlight& h : highlights) ++summary_.highlights_by_status[static_cast<size_t>(h.status)];
+  summary_.num_candidates = highlights.size();
+  if (config_.output.overlays && config_.refine.use_highlights)
+    WriteOverlays(scene_, *images_, highlights, config_.output.overlay_max_side_px, out_.Overlays(), terminal_);
+  terminal_.Finish();
+}
+
+void Flow::WriteResults(const RefineResult& refined) {
+  for (const std::string& warning : refined.summary.warnings) terminal_.Warn(warning);
+  WriteHighlightPictures(refined.highlights);
+  WriteLights(out_.Lights(), refined.lights);
+  WriteVdb(out_.LevelSetFile(), refined.level_set);
+  WriteMesh(out_.Mesh(), refined.mesh);
+  summary_.refine = refined.summary;
+  summary_.lights = refined.lights;
+  summary_.num_vertices = refined.mesh.vertices.size();
+  summary_.num_faces = refined.mesh.faces.size();
+}
+
+void Flow::Report(const std::string& outcome) {
+  summary_.outcome = outcome;
+  summary_.warnings = terminal_.Warnings();
+  WriteFileAtomically(out_.Report(), ReportJson(summary_));
+}
+
+}  // namespace
+
+RunSummary Run(const RunArguments& arguments, const Config& config, Terminal& terminal) {
+  return Flow(arguments, config, terminal).Run();
+}
+
+}  // namespace glint

@@ -1,0 +1,64 @@
+// The main job: a COLMAP project in, a better mesh out.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "highlights/gate.h"
+#include "light/light.h"
+#include "pipeline/config.h"
+#include "pipeline/terminal.h"
+#include "refine/refine.h"
+
+namespace glint {
+
+// The stages whose results are kept in the workspace, in their order; a run can go on from any of them.
+enum class RunStage { kSeed, kDetect, kGate, kRefine };
+inline constexpr std::array<std::string_view, 4> kRunStageNames = {"seed", "detect", "gate", "refine"};
+
+struct RunArguments {
+  std::filesystem::path project;
+  std::filesystem::path out;
+  std::filesystem::path images;     // empty: found in the project
+  std::filesystem::path masks;      // empty: found in the project, or none
+  std::filesystem::path lights;     // empty: unknown
+  std::filesystem::path mesh;       // empty: the seed is made from the sparse points
+  RunStage from = RunStage::kSeed;  // stages before it are read from an earlier run in `out`
+  std::string command;              // as typed, for the report
+};
+
+struct StageTime {
+  std::string stage;
+  double seconds = 0;
+  bool reused = false;  // read from an earlier run
+};
+
+// Everything that is to be said of a run, as data; report.json is made from it.
+struct RunSummary {
+  std::string command;
+  std::string outcome;  // "done", or why there is no result
+  std::filesystem::path model;
+  std::filesystem::path images;
+  size_t num_views = 0;
+  size_t num_missing_images = 0;
+  size_t num_points = 0;
+  size_t num_points_used = 0;
+  std::vector<std::string> notes;  // choices that were made
+  std::vector<std::string> warnings;
+  std::string seed_report;
+  size_t num_candidates = 0;
+  GateSummary gate;
+  RefineSummary refine;
+  std::vector<Light> lights_given, lights;
+  std::array<size_t, kNumHighlightStatuses> highlights_by_status{};
+  double diagonal_world = 0;  // of the seed
+  size_t num_vertices = 0, num_faces = 0;
+  std::vector<StageTime> times;
+};
+
+// Runs every stage and writes the workspace (pipeline/workspace.h). Throws InputError, NoResultError (after writing
+// what there is, and the report) or CancelledError.
+RunSummary Run(const RunArguments& arguments, const Config& config, Terminal& terminal);
+
+}  // namespace glint

@@ -1,0 +1,29 @@
+// The seed of a run: made from the sparse points, or from a mesh that the user gives.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "colmap/scene.h"
+#include "core/progress.h"
+#include "geometry/triangle_mesh.h"
+#include "io/image_source.h"
+#include "pipeline/config.h"
+
+namespace glint {
+
+struct SeedStageResult {
+  TriangleMesh mesh;                // closed, oriented outward, in the model's frame
+  std::vector<uint8_t> point_used;  // a scene point: lies on the object
+  std::string report;               // one line for people
+  std::vector<std::string> notes;
+  std::vector<std::string> warnings;
+};
+
+// `given_mesh`: empty to make the seed from the points. Throws InputError or NoResultError.
+SeedStageResult RunSeedStage(const Scene& scene, const ImageSource& images, const std::filesystem::path& given_mesh,
+                             const Config& config, Progress& progress);
+
+}  // namespace glint
