@@ -1,0 +1,295 @@
+#include "synthetic/shapes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "synthetic/random.h"
+
+namespace glint {
+namespace {
+
+using Eigen::Vector3d;
+
+class Sphere : public ImplicitShape {
+ public:
+  double Value(const Vector3d& x) const override { return x.norm() - 1; }
+  Vector3d Gradient(const Vector3d& x) const override { return x.normalized(); }
+};
+
+class Ellipsoid : public ImplicitShape {
+ public:
+  explicit Ellipsoid(uint64_t seed) {
+    Random random({seed, 11});
+    semi_axes_ = {random.Uniform(1.0, 1.15), random.Uniform(0.75, 0.9), random.Uniform(0.6, 0.75)};
+    radius_ = semi_axes_.maxCoeff();
+  }
+  double Value(const Vector3d& x) const override {
+    return (x.cwiseQuotient(semi_axes_).norm() - 1) * semi_axes_.minCoeff();
+  }
+  Vector3d Gradient(const Vector3d& x) const override {
+    const Vector3d scaled = x.cwiseQuotient(semi_axes_);
+    return scaled.normalized().cwiseQuotient(semi_axes_) * semi_axes_.minCoeff();
+  }
+
+ private:
+  Vector3d semi_axes_;
+};
+
+class Torus : public ImplicitShape {
+ public:
+  explicit Torus(uint64_t seed) {
+    Random random({seed, 12});
+    tube_ = random.Uniform(0.27, 0.33);
+    ring_ = 1 - tube_;
+    const double tilt = random.Uniform(0.05, 0.35), turn = random.Uniform(0, 2 * std::numbers::pi);
+    axis_ = {std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt)};
+  }
+  double Value(const Vector3d& x) const override {
+    const double along = axis_.dot(x), across = (x - along * axis_).norm() - ring_;
+    return std::hypot(along, across) - tube_;
+  }
+  Vector3d Gradient(const Vector3d& x) const override {
+    const double along = axis_.dot(x);
+    const Vector3d in_plane = x - along * axis_;
+    const double distance = in_plane.norm();
+    return (along * axis_ + (distance - ring_) * in_plane / distance).normalized();
+  }
+
+ private:
+  double ring_, tube_;
+  Vector3d axis_;
+};
+
+// A sum of plane sine waves.
+class Waves {
+ public:
+  Waves() = default;
+  // `slope`: amplitude times wave number of each wave.
+  Waves(Random& random, int count, double min_number, double max_number, double slope, bool flat) {
+    for (int i = 0; i < count; ++i) {
+      const double number = random.Uniform(min_number, max_number);
+      Vector3d k = random.UnitVector();
+      if (flat) k.z() = 0;
+      waves_.push_back({k.normalized() * number, slope / number, random.Uniform(0, 2 * std::numbers::pi)});
+      slope_bound_ += slope;
+    }
+  }
+  double Value(const Vector3d& x) const {
+    double sum = 0;
+    for (const Wave& w : waves_) sum += w.amplitude * std::sin(w.k.dot(x) + w.phase);
+    return sum;
+  }
+  Vector3d Gradient(const Vector3d& x) const {
+    Vector3d sum = Vector3d::Zero();
+    for (const Wave& w : waves_) sum += w.amplitude * std::cos(w.k.dot(x) + w.phase) * w.k;
+    return sum;
+  }
+  double slope_bound() const { return slope_bound_; }
+  double amplitude_bound() const {
+    double sum = 0;
+    for (const Wave& w : waves_) sum += w.amplitude;
+    return sum;
+  }
+
+ private:
+  struct Wave {
+    Vector3d k;
+    double amplitude, phase;
+  };
+  std::vector<Wave> waves_;
+  double slope_bound_ = 0;
+};
+
+// |x| - 1 - waves: star-shaped, and so a single closed surface, since the waves' slopes sum to less than one.
+class Blob : public ImplicitShape {
+ public:
+  explicit Blob(uint64_t seed) {
+    Random random({seed, 13});
+    waves_ = Waves(random, 5, 2.2, 4.2, 0.13, false);
+    lipschitz_ = 1 + waves_.slope_bound();
+    radius_ = 1 + waves_.amplitude_bound();
+  }
+  double Value(const Vector3d& x) const override { return (x.norm() - 1 - waves_.Value(x)) / lipschitz_; }
+  Vector3d Gradient(const Vector3d& x) const override { return (x.normalized() - waves_.Gradient(x)) / lipschitz_; }
+
+ private:
+  Waves waves_;
+  double lipschitz_ = 1;
+};
+
+// log-sum-exp: a smooth maximum, at least the maximum, whose gradient is a weighted mean of the gradients.
+template <size_t kCount>
+double SmoothMax(const std::array<double, kCount>& values, double width,
+                 std::array<double, kCount>* weights = nullptr) {
+  const double top = *std::max_element(values.begin(), values.end());
+  double sum = 0;
+  std::array<double, kCount> terms;
+  for (size_t i = 0; i < kCount; ++i) sum += terms[i] = std::exp((values[i] - top) / width);
+  if (weights)
+    for (size_t i = 0; i < kCount; ++i) (*weights)[i] = terms[i] / sum;
+  return top + width * std::log(sum);
+}
+
+// A slab between two height fields with the outline of a superellipse (exponent 4), all edges rounded.
+class Slab : public ImplicitShape {
+ public:
+  struct Form {
+    double half_length, half_width;  // of the outline, along x and y
+    double curve_x, curve_y;         // top: -curve_x x² - curve_y y²
+    double bottom;                   // height of the bottom's middle below the top's
+    double bottom_curve;             // of the bottom, as a fraction of the top's
+    double rounding;
+  };
+  Slab(const Form& form, const Waves& waves) : form_(form), waves_(waves) {
+    radius_ = std::hypot(form.half_length, form.half_width) + form.rounding;
+    const double slope = 2 * radius_ * std::max(form.curve_x, form.curve_y) + waves.slope_bound();
+    lipschitz_ = std::hypot(1, slope);
+  }
+  double Value(const Vector3d& x) const override { return SmoothMax(Sides(x), form_.rounding); }
+  Vector3d Gradient(const Vector3d& x) const override {
+    std::array<double, 3> weight;
+    SmoothMax(Sides(x), form_.rounding, &weight);
+    Vector3d crown(-2 * form_.curve_x * x.x(), -2 * form_.curve_y * x.y(), 0);
+    const Vector3d top = Vector3d::UnitZ() - crown - waves_.Gradient(x);
+    const Vector3d bottom = form_.bottom_curve * crown - Vector3d::UnitZ();
+    const double u = x.x() / form_.half_length, v = x.y() / form_.half_width;
+    const double norm = std::max(std::pow(u * u * u * u + v * v * v * v, 0.25), 1e-9), cube = norm * norm * norm;
+    const Vector3d side(u * u * u / cube / form_.half_length, v * v * v / cube / form_.half_width, 0);
+    return (weight[0] * top + weight[1] * bottom) / lipschitz_ +
+           weight[2] * std::min(form_.half_length, form_.half_width) * side;
+  }
+
+ private:
+  // Signed distances, not exceeded, to the top, the bottom and the outline.
+  std::array<double, 3> Sides(const Vector3d& x) const {
+    const double crown = -form_.curve_x * x.x() * x.x() - form_.curve_y * x.y() * x.y();
+    const double u = x.x() / form_.half_length, v = x.y() / form_.half_width;
+    const double outline = std::sqrt(std::sqrt(u * u * u * u + v * v * v * v)) - 1;
+    return {(x.z() - crown - waves_.Value(x)) / lipschitz_,
+            (form_.bottom_curve * crown - form_.bottom - x.z()) / lipschitz_,
+            outline * std::min(form_.half_length, form_.half_width)};
+  }
+
+  Form form_;
+  Waves waves_;
+  double lipschitz_ = 1;
+};
+
+// A car hood: thick, its crown convex with gentle swells.
+std::unique_ptr<ImplicitShape> MakeHood(uint64_t seed) {
+  Random random({seed, 14});
+  // The swells' curvature stays below the crown's, so that the top is convex.
+  const Waves swells(random, 3, 2.0, 3.2, 0.03, true);
+  return std::make_unique<Slab>(Slab::Form{random.Uniform(0.95, 1.05), random.Uniform(0.72, 0.8),
+                                           random.Uniform(0.16, 0.2), random.Uniform(0.22, 0.28), 0.42, 0.0, 0.05},
+                                swells);
+}
+
+// A thin curved pane, like a windscreen.
+std::unique_ptr<ImplicitShape> MakePane(uint64_t seed) {
+  Random random({seed, 15});
+  const Waves swells(random, 2, 1.5, 2.2, 0.01, true);
+  return std::make_unique<Slab>(Slab::Form{kPaneHalfLength, kPaneHalfWidth, random.Uniform(0.2, 0.26),
+                                           random.Uniform(0.1, 0.16), 0.09, 0.9, 0.012},
+                                swells);
+}
+
+// Two bumpy balls, blended where they touch by a smooth minimum.
+class Touching : public ImplicitShape {
+ public:
+  explicit Touching(uint64_t seed) {
+    Random random({seed, 16});
+    const double small = random.Uniform(0.4, 0.45), angle = random.Uniform(0, 2 * std::numbers::pi);
+    const Vector3d axis(std::cos(angle), std::sin(angle), 0);
+    for (int i = 0; i < 2; ++i) {
+      Ball& ball = balls_[i];
+      ball.radius = i == 0 ? 1 - small : small;
+      // The balls' surfaces meet up to the waves' amplitude; the smaller one sits lower, as on a table.
+      ball.center = (i == 0 ? -small : 1 - small) * 0.98 * axis - Vector3d(0, 0, i == 0 ? 0 : 1 - 2 * small);
+      ball.waves = Waves(random, 3, 2.2 / ball.radius, 3.5 / ball.radius, 0.07, false);
+      lipschitz_ = std::max(lipschitz_, 1 + ball.waves.slope_bound());
+    }
+    radius_ = 1.15;
+  }
+  double Value(const Vector3d& x) const override { return -SmoothMax(Insides(x), kBlend) / lipschitz_; }
+  Vector3d Gradient(const Vector3d& x) const override {
+    std::array<double, 2> weight;
+    SmoothMax(Insides(x), kBlend, &weight);
+    Vector3d sum = Vector3d::Zero();
+    for (int i = 0; i < 2; ++i) sum += weight[i] * ((x - balls_[i].center).normalized() - balls_[i].waves.Gradient(x));
+    return sum / lipschitz_;
+  }
+
+ private:
+  static constexpr double kBlend = 0.025;
+  struct Ball {
+    Vector3d center;
+    double radius;
+    Waves waves;
+  };
+  std::array<double, 2> Insides(const Vector3d& x) const {
+    std::array<double, 2> values;
+    for (int i = 0; i < 2; ++i)
+      values[i] = -((x - balls_[i].center).norm() - balls_[i].radius - balls_[i].waves.Value(x));
+    return values;
+  }
+  std::array<Ball, 2> balls_;
+  double lipschitz_ = 1;
+};
+
+class PlacedShape : public ImplicitShape {
+ public:
+  PlacedShape(std::shared_ptr<const ImplicitShape> shape, const Similarity& world_from_shape)
+      : shape_(std::move(shape)), world_from_shape_(world_from_shape) {
+    center_ = world_from_shape * shape_->center();
+    radius_ = world_from_shape.scale * shape_->radius();
+  }
+  double Value(const Vector3d& x) const override {
+    return world_from_shape_.scale * shape_->Value(world_from_shape_.InverseOf(x));
+  }
+  Vector3d Gradient(const Vector3d& x) const override {
+    return world_from_shape_.rotation * shape_->Gradient(world_from_shape_.InverseOf(x));
+  }
+
+ private:
+  std::shared_ptr<const ImplicitShape> shape_;
+  Similarity world_from_shape_;
+};
+
+}  // namespace
+
+const std::vector<std::string_view>& ShapeNames() {
+  static const std::vector<std::string_view> names = {"sphere", "ellipsoid", "torus",   "hood",
+                                                      "blob",   "pane",      "touching"};
+  return names;
+}
+
+std::unique_ptr<ImplicitShape> MakeShape(std::string_view name, uint64_t seed) {
+  if (name == "sphere") return std::make_unique<Sphere>();
+  if (name == "ellipsoid") return std::make_unique<Ellipsoid>(seed);
+  if (name == "torus") return std::make_unique<Torus>(seed);
+  if (name == "hood") return MakeHood(seed);
+  if (name == "blob") return std::make_unique<Blob>(seed);
+  if (name == "pane") return MakePane(seed);
+  if (name == "touching") return std::make_unique<Touching>(seed);
+  throw InputError("", "scene", fmt::format("expected one of {}, found \"{}\"", fmt::join(ShapeNames(), ", "), name));
+}
+
+std::unique_ptr<ImplicitShape> MakePaneInterior(double depth) {
+  // Its top follows the pane's curvature less, at a gap, and its bottom is below the ground.
+  const Slab::Form form{0.93 * kPaneHalfLength, 0.93 * kPaneHalfWidth, 0.12, 0.1, depth, 0, 0.03};
+  return PlaceShape(std::make_shared<Slab>(form, Waves()), {1, Eigen::Quaterniond::Identity(), Vector3d(0, 0, -0.26)});
+}
+
+std::unique_ptr<ImplicitShape> PlaceShape(std::shared_ptr<const ImplicitShape> shape,
+                                          const Similarity& world_from_shape) {
+  return std::make_unique<PlacedShape>(std::move(shape), world_from_shape);
+}
+
+}  // namespace glint
