@@ -45,6 +45,7 @@ void DeclareCommands(CLI::App& app, glint::CommandLine& line) {
   glint::AddSdfCommand(app, line);
   glint::AddMeshCommand(app, line);
   glint::AddCompareCommand(app, line);
+  glint::AddInspectCommand(app, line);
   glint::AddConfigCommand(app, line);
 }
 
