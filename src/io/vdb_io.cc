@@ -86,7 +86,8 @@ std::string Describe(const openvdb::GridBase& grid) {
 std::string ChooseGrid(openvdb::io::File& file, const fs::path& path, std::vector<std::string>* notes) {
   std::vector<std::string> level_sets;
   std::string found;
-  for (const auto& grid : *file.readAllGridMetadata()) {
+  const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();  // a temporary would be gone in the loop
+  for (const auto& grid : *grids) {
     found += (found.empty() ? "" : ", ") + Describe(*grid);
     if (grid->isType<openvdb::FloatGrid>() && grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
       level_sets.push_back(grid->getName());
