@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -21,6 +22,11 @@ fs::path Require(const fs::path& folder, const char* name, bool is_binary) {
 }
 
 }  // namespace
+
+bool HasZeroedPoints(const Image& image) {
+  return image.points2d.size() > 1 && std::all_of(image.points2d.begin(), image.points2d.end(),
+                                                  [](const Point2D& point) { return point.px.isZero(0); });
+}
 
 Model ReadModel(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw InputError(folder.string(), "", "expected a folder with a COLMAP model");
@@ -52,6 +58,7 @@ Model ReadModel(const fs::path& folder) {
                                   : internal::ReadFramesText(files.frames, warnings);
     ApplyFrames(files, rigs, frames, model, warnings);
   }
+  CheckAgreement(files, model);
   model.warnings = warnings.Take();
   return model;
 }

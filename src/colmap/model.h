@@ -21,7 +21,6 @@ struct Point2D {
   uint64_t point3d_id = kInvalidPoint3DId;
 };
 
-// `points2d` all at (0, 0) mean that a program dropped them: the tracks hold, the pixels do not (MakeScene projects).
 struct Image {
   uint32_t id = 0;
   std::string name;  // path relative to the image folder, '/' separated, UTF-8
@@ -29,6 +28,9 @@ struct Image {
   Rigid3d cam_from_world;
   std::vector<Point2D> points2d;
 };
+
+// True if all of the image's 2D points are at (0, 0): a program dropped them. The tracks hold, the pixels do not.
+bool HasZeroedPoints(const Image& image);
 
 struct TrackElement {
   uint32_t image_id;
@@ -54,8 +56,9 @@ struct Model {
 // Reads a model folder, binary (cameras.bin, ...) or text (cameras.txt, ...), COLMAP 3.x or 4.x. Where 4.x's rigs
 // and frames lie beside them, the poses are theirs. Throws InputError naming file and record for what cannot be used:
 // a cut file, an unknown camera model or camera id, duplicate ids or names, poses or points that are not finite, names
-// that leave the image folder, no image at all. Repairs, with a warning: quaternions not of unit length, tracks and 2D
-// points that do not refer to each other (left out). An empty point cloud is allowed, with a warning.
+// that leave the image folder, no image at all, points that do not project to where the images saw them. Repairs, with
+// a warning: quaternions not of unit length, tracks and 2D points that do not refer to each other (left out). An empty
+// point cloud is allowed, with a warning.
 Model ReadModel(const std::filesystem::path& folder);
 
 enum class ModelFormat { kBinary, kText };

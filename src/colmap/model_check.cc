@@ -84,8 +84,6 @@ void CheckImages(const ModelFiles& files, Model& model, Warnings& warnings) {
                        fmt::format("expected camera {} in {}, found {}: do the files belong together?", image.camera_id,
                                    files.cameras.filename().string(), CameraIds(model.cameras)));
     }
-    const bool all_zero = image.points2d.size() > 1 && std::all_of(image.points2d.begin(), image.points2d.end(),
-                                                                   [](const Point2D& p) { return p.px.isZero(0); });
     warnings.Add(
         "2D points at zero",
         [&] {
@@ -93,7 +91,7 @@ void CheckImages(const ModelFiles& files, Model& model, Warnings& warnings) {
               "{}: {}: all {} 2D points are at (0, 0); observations are projected from the points instead",
               files.images.string(), ImageRecord(image), image.points2d.size());
         },
-        all_zero ? 1 : 0);
+        HasZeroedPoints(image) ? 1 : 0);
   }
 }
 

@@ -61,6 +61,10 @@ void ApplyFrames(const ModelFiles& files, const std::vector<Rig>& rigs, const st
 // Drops track elements and 2D points that do not refer to each other. The model is sorted by id.
 void RepairTracks(const ModelFiles& files, Model& model, Warnings& warnings);
 
+// Throws InputError if the points do not project to where the images say they saw them (camera-to-world poses, files
+// of two models), judged by the median over a sample of the observations.
+void CheckAgreement(const ModelFiles& files, const Model& model);
+
 // A pose as the files say it: throws InputError if it is not finite or has no rotation; normalises the quaternion.
 Rigid3d CheckedPose(const Eigen::Vector4d& quaternion_wxyz, const Eigen::Vector3d& translation,
                     const std::filesystem::path& file, const std::string& record, Warnings& warnings);

@@ -41,6 +41,13 @@ void RepairTracks(const ModelFiles& files, Model& model, Warnings& warnings) {
   std::vector<size_t> first_bit(model.images.size() + 1, 0);
   for (size_t i = 0; i < model.images.size(); ++i) first_bit[i + 1] = first_bit[i] + model.images[i].points2d.size();
   std::vector<bool> is_listed(first_bit.back(), false);
+  // Programs that drop the 2D points leave zeros, also for the ids: there the tracks alone are to be believed.
+  std::vector<bool> is_zeroed(model.images.size());
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    is_zeroed[i] = HasZeroedPoints(model.images[i]);
+    if (!is_zeroed[i]) continue;
+    for (Point2D& point2d : model.images[i].points2d) point2d.point3d_id = kInvalidPoint3DId;
+  }
 
   for (Point3D& point : model.points) {
     const auto drop = [&](std::string_view kind, const TrackElement& element, const std::string& found) {
@@ -55,12 +62,13 @@ void RepairTracks(const ModelFiles& files, Model& model, Warnings& warnings) {
         drop("missing image", element, "which is not in the model");
         return true;
       }
-      const auto& points2d = model.images[image].points2d;
+      auto& points2d = model.images[image].points2d;
       if (element.point2d_index >= points2d.size()) {
         drop("missing 2D point", element, "which has fewer");
         return true;
       }
-      const Point2D& point2d = points2d[element.point2d_index];
+      Point2D& point2d = points2d[element.point2d_index];
+      if (is_zeroed[image] && point2d.point3d_id == kInvalidPoint3DId) point2d.point3d_id = point.id;
       if (point2d.point3d_id != point.id || !point2d.px.allFinite()) {
         drop("contradicting 2D point", element, "which does not refer back to it");
         return true;

@@ -100,11 +100,13 @@ FolderChoice ChooseFolder(const std::vector<fs::path>& parents, const std::vecto
   FolderChoice choice;
   for (const fs::path& parent : parents) {
     for (const char* candidate : candidates) {
-      const fs::path folder = (parent / candidate).lexically_normal();
+      const fs::path folder = *candidate ? parent / candidate : parent;
       if (!IsFolder(folder)) continue;
       const auto found = static_cast<size_t>(std::count_if(
           names.begin(), names.end(), [&](const auto& name) { return IsFile(folder / (name + suffix)); }));
-      if (choice.folder.empty() || found > choice.num_found) choice = {folder, found};
+      // The parent itself, candidate "", counts only if the files are there.
+      const bool is_first = choice.folder.empty() && *candidate;
+      if (is_first || found > choice.num_found) choice = {folder, found};
     }
   }
   return choice;
@@ -150,11 +152,8 @@ ProjectPaths FindProject(const fs::path& project, const fs::path& images_overrid
   const auto parents = ParentsToSearch(paths.root, paths.model);
   paths.images = images_override;
   if (paths.images.empty()) {
-    const FolderChoice choice =
-        ChooseFolder(parents, {"images", "input", "imgs", "image", "photos", "rgb", "."}, names, "");
-    // The bare parent folder counts only if images lie in it.
-    const bool is_bare = std::find(parents.begin(), parents.end(), choice.folder.lexically_normal()) != parents.end();
-    if (choice.num_found > 0 || (!choice.folder.empty() && !is_bare)) paths.images = choice.folder;
+    const std::vector<const char*> usual_names = {"images", "input", "imgs", "image", "photos", "rgb", ""};
+    paths.images = ChooseFolder(parents, usual_names, names, "").folder;
     if (paths.images.empty()) paths.notes.push_back("no folder with the model's images was found");
   }
   paths.masks = masks_override;

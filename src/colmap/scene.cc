@@ -39,9 +39,7 @@ Scene MakeScene(const Model& model) {
     const auto camera = model.cameras.find(image->camera_id);
     GLINT_CHECK(camera != model.cameras.end());
     scene.views.push_back({image->name, image->id, camera->second, image->cam_from_world});
-    pixels_known.push_back(
-        image->points2d.size() == 1 ||
-        !std::all_of(image->points2d.begin(), image->points2d.end(), [](const Point2D& p) { return p.px.isZero(0); }));
+    pixels_known.push_back(!HasZeroedPoints(*image));
   }
   scene.points.reserve(model.points.size());
   for (const Point3D& point : model.points) {

@@ -44,6 +44,8 @@ struct Scene {
   std::vector<ScenePoint> points;
 };
 
+// Views sorted by name. Where an image's pixels were dropped (HasZeroedPoints) an observation is the projection of its
+// point, left out if that is outside the image.
 Scene MakeScene(const Model& model);
 
 }  // namespace glint
