@@ -25,6 +25,12 @@ bool IsFile(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
+// Without ".", ".." and a slash at the end; links stay links, for people sort their files with them.
+fs::path AbsolutePath(const fs::path& path) {
+  const fs::path normal = fs::absolute(path).lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
 // Any of a model's main files: an incomplete model is found, too, and reading it says what is missing.
 bool IsModel(const fs::path& folder) {
   constexpr std::array kFiles = {"images.bin", "images.txt", "cameras.bin", "cameras.txt"};
@@ -91,36 +97,43 @@ std::vector<std::string> Sample(const std::vector<std::string>& names, size_t li
 
 // Of the folders `candidates` beside the model and its parents, down from the nearest: the one that holds most of
 // the names; where none holds any, the first that exists.
+struct Parents {
+  std::vector<fs::path> folders;
+  size_t num_inside = 0;  // the first ones lie inside the project
+};
 struct FolderChoice {
   fs::path folder;
   size_t num_found = 0;
 };
-FolderChoice ChooseFolder(const std::vector<fs::path>& parents, const std::vector<const char*>& candidates,
+FolderChoice ChooseFolder(const Parents& parents, const std::vector<const char*>& candidates,
                           const std::vector<std::string>& names, const std::string& suffix) {
   FolderChoice choice;
-  for (const fs::path& parent : parents) {
+  for (size_t i = 0; i < parents.folders.size(); ++i) {
+    const fs::path& parent = parents.folders[i];
     for (const char* candidate : candidates) {
       const fs::path folder = *candidate ? parent / candidate : parent;
       if (!IsFolder(folder)) continue;
       const auto found = static_cast<size_t>(std::count_if(
           names.begin(), names.end(), [&](const auto& name) { return IsFile(folder / (name + suffix)); }));
-      // The parent itself, candidate "", counts only if the files are there.
-      const bool is_first = choice.folder.empty() && *candidate;
+      // Folders above the project and the parent itself, candidate "", count only if the files are there.
+      const bool is_first = choice.folder.empty() && *candidate && i < parents.num_inside;
       if (is_first || found > choice.num_found) choice = {folder, found};
     }
   }
   return choice;
 }
 
-std::vector<fs::path> ParentsToSearch(const fs::path& project, const fs::path& model) {
-  std::vector<fs::path> parents;
-  fs::path folder = fs::absolute(model).lexically_normal();
-  const fs::path root = fs::absolute(project).lexically_normal();
-  // Up to the project, and three levels where the model itself was given (sparse/0 → the project's folder).
-  for (int level = 0; level < 4; ++level) {
-    parents.push_back(folder);
-    if (folder == root && model != project) break;
-    if (!folder.has_parent_path() || folder == folder.parent_path()) break;
+// The model's folder and the folders above it: those inside the project, then a few more, for a project given as
+// "sparse" or "sparse/0".
+Parents ParentsToSearch(const fs::path& project, const fs::path& model) {
+  constexpr size_t kMaxLevelsAbove = 2;
+  Parents parents;
+  fs::path folder = AbsolutePath(model);
+  const fs::path root = AbsolutePath(project);
+  while (parents.num_inside == 0 || parents.folders.size() < parents.num_inside + kMaxLevelsAbove) {
+    parents.folders.push_back(folder);
+    if (folder == root) parents.num_inside = parents.folders.size();
+    if (folder == folder.parent_path()) break;
     folder = folder.parent_path();
   }
   return parents;
@@ -159,7 +172,10 @@ ProjectPaths FindProject(const fs::path& project, const fs::path& images_overrid
   paths.masks = masks_override;
   if (paths.masks.empty()) {
     auto mask_parents = parents;
-    if (!paths.images.empty()) mask_parents.insert(mask_parents.begin(), paths.images.lexically_normal().parent_path());
+    if (!paths.images.empty()) {
+      mask_parents.folders.insert(mask_parents.folders.begin(), AbsolutePath(paths.images).parent_path());
+      ++mask_parents.num_inside;
+    }
     const FolderChoice choice = ChooseFolder(mask_parents, {"masks", "mask"}, names, ".png");
     if (choice.num_found > 0) {
       paths.masks = choice.folder;
