@@ -16,7 +16,7 @@ namespace glint {
 struct DetectOptions {
   double min_strength = 0.04;  // fraction of sensor white
   double min_contrast = 0.2;   // of the local body's brightness
-  double max_size_rel = 0.15;  // fraction of the image's diagonal
+  double max_size_rel = 0.25;  // fraction of the image's diagonal
   double max_tint_deg = 24;    // degrees in linear RGB
   double max_profile_error = 0.2;
   double saturation = 0.93;  // fraction of sensor white

@@ -9,12 +9,13 @@
 namespace glint {
 namespace {
 
-constexpr int kNumParams = 7;  // log amplitude, body, peak x, y, and the factor of q: a, c, e
+constexpr int kNumParams = 9;  // log amplitude, body, peak x, y, the factor of q: a, c, e, the skew: k, m
 using Params = Eigen::Matrix<double, kNumParams, 1>;
 using Normal = Eigen::Matrix<double, kNumParams, kNumParams>;
 
 constexpr double kHalfHeightQ = 0.41421356;  // (1 + q)^-2 = 1/2
 constexpr double kReach = 3.4;               // radius of the fit in standard deviations of the blob (half height: 2)
+constexpr double kSkewSigma = 0.2;           // how lopsided lobes are on curved surfaces
 constexpr int kMaxIterations = 20;
 constexpr int kManyPixels = 400;
 
@@ -32,16 +33,18 @@ struct Problem {
   bool sparse;  // every other pixel left out
 };
 
-// Value and gradient of the model; q = (a dx + c dy)² + (e dy)².
+// Value and gradient of the model; u = a dx + c dy, v = e dy, q = (u² + v²) exp(k u + m v).
 double Evaluate(const Params& p, double amplitude, const Eigen::Vector2d& at, Params* gradient) {
   const double dx = at.x() - p[2], dy = at.y() - p[3];
   const double u = p[4] * dx + p[5] * dy, v = p[6] * dy;
-  const double q = u * u + v * v;
+  const double skew = std::exp(std::clamp(p[7] * u + p[8] * v, -3.0, 3.0));
+  const double q = (u * u + v * v) * skew;
   const double f = 1 / ((1 + q) * (1 + q));
   if (gradient) {
     const double df = -2 * amplitude * f / (1 + q);  // by q
-    *gradient << amplitude * f, 1, df * -2 * u * p[4], df * -2 * (u * p[5] + v * p[6]), df * 2 * u * dx,
-        df * 2 * u * dy, df * 2 * v * dy;
+    const double du = df * (2 * u * skew + p[7] * q), dv = df * (2 * v * skew + p[8] * q);
+    *gradient << amplitude * f, 1, -du * p[4], -(du * p[5] + dv * p[6]), du * dx, du * dy, dv * dy, df * q * u,
+        df * q * v;
   }
   return p[1] + amplitude * f;
 }
@@ -73,12 +76,15 @@ double Linearise(const Problem& problem, const Params& p, double scale, Normal* 
   double cost = scale * scale * (log_sum + std::log(product));
   const double body = (p[1] - problem.body_prior) / problem.body_sigma;
   const double log_amplitude = (p[0] - problem.log_amplitude_prior) / 2;
-  cost += body * body + log_amplitude * log_amplitude;
+  const double skew_weight = 1 / (kSkewSigma * kSkewSigma);
+  cost += body * body + log_amplitude * log_amplitude + skew_weight * p.tail<2>().squaredNorm();
   if (hessian) {
     (*hessian)(1, 1) += 1 / (problem.body_sigma * problem.body_sigma);
     (*rhs)[1] -= body / problem.body_sigma;
     (*hessian)(0, 0) += 0.25;
     (*rhs)[0] -= log_amplitude / 2;
+    hessian->diagonal().tail<2>().array() += skew_weight;
+    rhs->tail<2>() -= skew_weight * p.tail<2>();
   }
   return cost;
 }
@@ -143,7 +149,7 @@ Problem Gather(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& c
   const int x1 = std::min(map.cols - 1, static_cast<int>(std::floor(centroid.x() + rx)));
   const int y0 = std::max(0, static_cast<int>(std::ceil(centroid.y() - ry)));
   const int y1 = std::min(map.rows - 1, static_cast<int>(std::floor(centroid.y() + ry)));
-  // A few hundred pixels fix seven parameters; of more every other one is left out, as on a chessboard.
+  // A few hundred pixels fix nine parameters; of more every other one is left out, as on a chessboard.
   const bool sparse = problem.sparse = (x1 - x0 + 1) * (y1 - y0 + 1) > kManyPixels;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0 + (sparse ? (x0 + y) % 2 : 0); x <= x1; x += sparse ? 2 : 1) {
@@ -174,6 +180,7 @@ LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& 
   p[4] = std::sqrt(q(0, 0));
   p[5] = q(0, 1) / p[4];
   p[6] = std::sqrt(std::max(q(1, 1) - p[5] * p[5], 1e-9));
+  p.tail<2>().setZero();
   double scale = 1;
   if (!Minimise(problem, p, scale)) return fit;
 
