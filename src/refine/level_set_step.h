@@ -21,7 +21,7 @@ struct LevelSetOptions {
   double point_weight = 1;
   double highlight_weight = 1;
   int reweightings = 2;
-  int max_iterations = 300;
+  int max_iterations = 100;
   double tolerance = 1e-3;
   void Visit(OptionVisitor& v);
 };

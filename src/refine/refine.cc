@@ -189,7 +189,8 @@ bool Refiner::RunLevel(double voxel) {
   SdfOptions sdf;
   sdf.half_width_voxels = std::max(8.0, 2 * options_.half_width_voxels);
   const LevelSet seed_field = MeshToLevelSet(seed_, voxel, sdf);
-  sdf.half_width_voxels = options_.half_width_voxels;
+  // On the coarse levels contacts may still lie a few voxels off the surface.
+  sdf.half_width_voxels = options_.half_width_voxels + (voxel > 1.5 * options_.voxel_rel ? 2 : 0);
   for (int k = 0; k < options_.max_iterations; ++k) {
     progress_.ThrowIfCancelled();
     const auto start = std::chrono::steady_clock::now();
@@ -204,7 +205,9 @@ bool Refiner::RunLevel(double voxel) {
     iteration.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     summary_.iterations.push_back(iteration);
     progress_.Advance();
-    if (k > 0 && iteration.contact_motion_voxels < options_.min_motion_voxels) return true;
+    // The very first iteration moves the contacts off the seed: what it reports says nothing about the next.
+    const bool first = summary_.iterations.size() == 1;
+    if (!first && iteration.contact_motion_voxels < options_.min_motion_voxels) return true;
   }
   return false;
 }

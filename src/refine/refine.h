@@ -22,7 +22,7 @@ namespace glint {
 struct RefineOptions {
   double voxel_rel = 1.0 / 256;
   int levels = 3;
-  double half_width_voxels = 4;
+  double half_width_voxels = 3;
   int max_iterations = 4;
   double min_motion_voxels = 0.05;
   double min_point_sigma_rel = 0.001;
