@@ -1,0 +1,108 @@
+#include "seed/build_seed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/closest_point.h"
+#include "seed/sparse_surface.h"
+
+namespace glint {
+namespace {
+
+constexpr double kRegionMargin = 0.05;  // of the diagonal
+constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
+
+// Sum over the pieces; the mesh is closed and manifold.
+long GenusOf(const TriangleMesh& mesh) {
+  const long euler = static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.faces.size()) / 2;
+  return 1 - euler / 2;
+}
+
+// What the smooth surface should pass: the object's points on the sparse surface, and its foot on the ground.
+std::vector<Attachment> Attachments(const SparseSurface& surface, const PointReliability& reliability) {
+  const double foot_sigma = kFootSigmaRel * Diagonal(surface.mesh);
+  std::vector<Attachment> attachments;
+  for (size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
+    const int point = surface.scene_point[v];
+    attachments.push_back({surface.mesh.vertices[v], point >= 0 ? reliability.sigma[point] : foot_sigma});
+  }
+  return attachments;
+}
+
+double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
+  const ClosestPointQuery query(mesh);
+  std::vector<double> distances;
+  for (size_t i = 0; i < used.size(); ++i)
+    if (used[i]) distances.push_back(std::sqrt(query.Find(scene.points[i].position)->squared_distance));
+  if (distances.empty()) return 0;
+  std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
+  return distances[distances.size() / 2];
+}
+
+void CountPoints(const PointReliability& reliability, const ObjectChoice& choice, SeedSummary& summary) {
+  summary.num_points = reliability.status.size();
+  summary.num_virtual = reliability.Count(PointStatus::kVirtual);
+  summary.num_unreliable = summary.num_points - summary.num_virtual - reliability.Count(PointStatus::kReliable);
+  summary.num_object_points = std::count(choice.role.begin(), choice.role.end(), PointRole::kObject);
+  summary.ground_found = choice.ground.has_value();
+  summary.object_chosen_by = choice.chosen_by;
+}
+
+}  // namespace
+
+void SeedOptions::Visit(OptionVisitor& v) {
+  VisitSection(v, "points", "Which sparse points are believed", points);
+  VisitSection(v, "object", "Which part of the scene is the object", object);
+  VisitSection(v, "surface", "The visibility-consistent surface of the points", surface);
+  VisitSection(v, "smooth", "The smooth surface that refinement starts on", smooth);
+}
+
+std::string SeedSummary::BriefReport() const {
+  std::string text =
+      fmt::format("seed from {} of {} points (object by {}; {} unreliable, {} virtual left out), genus {}",
+                  num_object_points, num_points, object_chosen_by, num_unreliable, num_virtual, genus);
+  for (const std::string& warning : warnings) text += "; " + warning;
+  return text;
+}
+
+SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary* summary, Progress& progress,
+                     const ImageSource* masks) {
+  SeedSummary unused;
+  SeedSummary& s = summary ? *summary : unused;
+  s = SeedSummary();
+  SeedResult out;
+  progress.Begin("seed", 4);
+  const PointReliability reliability = JudgePoints(scene, options.points);
+  progress.Advance();
+  const ObjectChoice choice = ChooseObject(scene, reliability, options.object, options.surface, masks, progress);
+  CountPoints(reliability, choice, s);
+  out.point_used.assign(scene.points.size(), 0);
+  progress.Advance();
+  progress.ThrowIfCancelled();
+  if (s.num_object_points < 4) {
+    s.warnings.push_back(fmt::format("only {} sparse points on the object: no seed", s.num_object_points));
+    return out;
+  }
+  const SparseSurface surface = MakeSparseSurface(scene, reliability, choice, options.surface);
+  progress.Advance();
+  progress.ThrowIfCancelled();
+  if (surface.mesh.empty()) {
+    s.warnings.push_back("the sparse points enclose no volume: no seed");
+    return out;
+  }
+  out.mesh = surface.mesh;
+  out.smooth = FairThroughPoints(surface.mesh, Attachments(surface, reliability), options.smooth);
+  for (int point : surface.scene_point)
+    if (point >= 0) out.point_used[point] = 1;
+  out.region = BoundingBox(out.mesh).merged(BoundingBox(out.smooth));
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kRegionMargin * Diagonal(out.smooth));
+  out.region = Eigen::AlignedBox3d(out.region.min() - margin, out.region.max() + margin);
+  s.genus = GenusOf(out.mesh);
+  s.smooth_residual_rel = MedianDistance(out.smooth, scene, out.point_used) / Diagonal(out.smooth);
+  progress.Advance();
+  return out;
+}
+
+}  // namespace glint

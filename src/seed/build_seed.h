@@ -1,0 +1,58 @@
+// Sparse points to a closed, oriented mesh of the object: what Glint starts on.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "colmap/scene.h"
+#include "core/options.h"
+#include "core/progress.h"
+#include "geometry/triangle_mesh.h"
+#include "io/image_source.h"
+#include "seed/fair.h"
+#include "seed/object_choice.h"
+#include "seed/reliable_points.h"
+#include "seed/visibility_cut.h"
+
+namespace glint {
+
+struct SeedOptions {
+  ReliabilityOptions points;
+  ObjectOptions object;
+  CutOptions surface;
+  FairOptions smooth;
+
+  void Visit(OptionVisitor& v);
+};
+
+struct SeedResult {
+  TriangleMesh mesh;                // the sparse surface as it is: closed, oriented outward, one piece
+  TriangleMesh smooth;              // the same, faired through the points: what the level set starts on
+  std::vector<uint8_t> point_used;  // per scene point: 1 for a reliable point of the object's surface
+  Eigen::AlignedBox3d region;       // around the object (world), with a margin of 5 % of its diagonal
+};
+
+struct SeedSummary {
+  size_t num_points = 0;         // of the scene
+  size_t num_unreliable = 0;     // short track, large error, narrow angle, isolated
+  size_t num_virtual = 0;        // triangulated on highlights or reflections
+  size_t num_object_points = 0;  // used for the surface
+  bool ground_found = false;
+  std::string object_chosen_by;    // "box", "masks", "ground and focus", "focus"
+  long genus = 0;                  // of both meshes
+  double smooth_residual_rel = 0;  // median distance of the object's points from `smooth`, fraction of its diagonal
+  std::vector<std::string> warnings;
+
+  std::string BriefReport() const;
+};
+
+// `masks` (optional): 0 where the object is not. With fewer than four points on the object, or none that enclose a
+// volume, the meshes are empty and the summary's warnings say why. Scale, place and rotation of the world do not
+// matter.
+SeedResult BuildSeed(const Scene& scene, const SeedOptions& options = {}, SeedSummary* summary = nullptr,
+                     Progress& progress = Progress::Silent(), const ImageSource* masks = nullptr);
+
+}  // namespace glint

@@ -1,0 +1,35 @@
+// A smooth surface through sparse points: bends as little as the points allow.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/options.h"
+#include "geometry/triangle_mesh.h"
+
+namespace glint {
+
+struct FairOptions {
+  double edge_rel = 0.015;
+  double smoothing = 0.5;
+  double stay = 0.002;
+  int rounds = 4;
+
+  void Visit(OptionVisitor& v);
+};
+
+// A place that the surface should pass, with its standard deviation (world units).
+struct Attachment {
+  Eigen::Vector3d position;
+  double sigma;
+};
+
+// Remeshes evenly, then minimises (sparse Cholesky; attached again and robustly weighted each round)
+//   λ ∫‖Δx‖² + Σᵢ wᵢ ‖x(attached point of i) − pᵢ‖² + stay · (the same density of attachments all over the start)
+// with λ set so that the surface bends over `smoothing` times the spacing of the attachments. The thin-plate energy is
+// the linearised Willmore energy, whose closed minimisers are spheres: between points a convex body bulges as it
+// should, where flat facets cut 2–3 % off. The mesh must be closed and manifold; topology is kept.
+TriangleMesh FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
+                               const FairOptions& options);
+
+}  // namespace glint

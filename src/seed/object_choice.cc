@@ -1,0 +1,190 @@
+#include "seed/object_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/core.hpp>
+
+#include "core/check.h"
+#include "core/error.h"
+#include "seed/point_index.h"
+#include "seed/sparse_cells.h"
+
+namespace glint {
+namespace {
+
+constexpr double kReachRel = 1.5;     // of the focus distance: what is farther from the focus is not looked at
+constexpr double kNearRel = 0.25;     // of the focus distance: how near the focus the object is expected
+constexpr double kAboveGround = 1.5;  // ground tolerances: matter lower than this joins neighbours on the table
+constexpr double kGroundBand = 2;     // ground tolerances: points this close to the plane are the ground's
+constexpr double kMaxGap = 4;         // spacings from a point to the piece that it is counted to
+
+std::vector<PointRole> RolesByBox(const Scene& scene, const std::vector<uint8_t>& use, const std::vector<double>& box) {
+  const Eigen::Vector3d center(box[0], box[1], box[2]), half = Eigen::Vector3d(box[3], box[4], box[5]) / 2;
+  std::vector<PointRole> role(scene.points.size(), PointRole::kUnused);
+  for (size_t i = 0; i < role.size(); ++i) {
+    if (!use[i]) continue;
+    const bool in = ((scene.points[i].position - center).cwiseAbs().array() <= half.array()).all();
+    role[i] = in ? PointRole::kObject : PointRole::kContext;
+  }
+  return role;
+}
+
+// Per scene point: observations on the masks minus those off them; empty if no view has a mask.
+std::vector<int> MaskBalance(const Scene& scene, const ImageSource& masks) {
+  std::vector<std::vector<std::pair<int, Eigen::Vector2f>>> by_view(scene.views.size());
+  for (size_t i = 0; i < scene.points.size(); ++i)
+    for (const Observation& o : scene.points[i].observations) by_view[o.view].emplace_back(static_cast<int>(i), o.px);
+  std::vector<int> balance(scene.points.size(), 0);
+  bool any = false;
+  for (size_t v = 0; v < scene.views.size(); ++v) {
+    cv::Mat mask;
+    if (!masks.LoadMask(v, mask)) continue;
+    any = true;
+    for (const auto& [point, px] : by_view[v]) {
+      const int x = std::clamp(static_cast<int>(px.x()), 0, mask.cols - 1);
+      const int y = std::clamp(static_cast<int>(px.y()), 0, mask.rows - 1);
+      balance[point] += mask.at<uint8_t>(y, x) ? 1 : -1;
+    }
+  }
+  if (!any) balance.clear();
+  return balance;
+}
+
+// The piece of matter with the most volume near the focus; −1 if there is none.
+int PieceAtFocus(const Tetrahedra& tetrahedra, const CellComponents& pieces, const Focus& focus) {
+  std::vector<double> score(pieces.count, 0.0);
+  for (int c = 0; c < static_cast<int>(tetrahedra.cells.size()); ++c) {
+    if (pieces.component[c] < 0) continue;
+    const double off = (tetrahedra.Centroid(c) - focus.center).norm() / (kNearRel * focus.distance);
+    score[pieces.component[c]] += tetrahedra.Volume(c) * std::exp(-0.5 * off * off);
+  }
+  if (score.empty()) return -1;
+  return static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());
+}
+
+// Per vertex of the triangulation: the piece most of whose cells it belongs to; −1: none.
+std::vector<int> PieceOfVertex(const Tetrahedra& tetrahedra, const CellComponents& pieces) {
+  std::vector<std::map<int, int>> count(tetrahedra.points.size());
+  for (size_t c = 0; c < tetrahedra.cells.size(); ++c)
+    if (pieces.component[c] >= 0)
+      for (int v : tetrahedra.cells[c]) ++count[v][pieces.component[c]];
+  std::vector<int> piece(tetrahedra.points.size(), -1);
+  for (size_t v = 0; v < piece.size(); ++v) {
+    int best = 0;
+    for (const auto& [p, n] : count[v])
+      if (n > best) {
+        best = n;
+        piece[v] = p;
+      }
+  }
+  return piece;
+}
+
+// Points that bound no matter go with their nearest neighbour that does, unless it is far.
+void AdoptLoosePoints(const std::vector<Eigen::Vector3d>& points, const std::vector<uint8_t>& eligible,
+                      std::vector<int>& piece) {
+  std::vector<Eigen::Vector3d> settled;
+  std::vector<int> settled_piece;
+  for (size_t i = 0; i < points.size(); ++i)
+    if (eligible[i] && piece[i] >= 0) {
+      settled.push_back(points[i]);
+      settled_piece.push_back(piece[i]);
+    }
+  if (settled.size() < 2) return;
+  const PointIndex index(settled);
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (!eligible[i] || piece[i] >= 0) continue;
+    const int nearest = index.Nearest(points[i], 1)[0];
+    const std::vector<int> around = index.Nearest(settled[nearest], 4);
+    const double spacing = (settled[around.back()] - settled[nearest]).norm();
+    if ((points[i] - settled[nearest]).norm() < kMaxGap * spacing) piece[i] = settled_piece[nearest];
+  }
+}
+
+// Whether matter may be in a cell when pieces are told apart: above the ground and finite.
+std::vector<uint8_t> AboveGround(const Tetrahedra& tetrahedra, const std::vector<uint8_t>& labels,
+                                 const std::optional<GroundPlane>& ground) {
+  std::vector<uint8_t> above = labels;
+  if (!ground) return above;
+  for (int c = 0; c < static_cast<int>(labels.size()); ++c)
+    if (labels[c] && ground->plane.signedDistance(tetrahedra.Centroid(c)) < kAboveGround * ground->tolerance)
+      above[c] = 0;
+  return above;
+}
+
+void FindByFocus(const Scene& scene, const PointReliability& reliability, const std::vector<uint8_t>& use,
+                 const CutOptions& cut, ObjectChoice& choice) {
+  std::vector<SparseVertex> vertices;
+  std::vector<uint8_t> above_band;
+  for (size_t i = 0; i < scene.points.size(); ++i) {
+    const Eigen::Vector3d& x = scene.points[i].position;
+    if (!use[i]) continue;
+    choice.role[i] = PointRole::kContext;
+    if ((x - choice.focus.center).norm() > kReachRel * choice.focus.distance) continue;
+    const bool on_ground =
+        choice.ground && choice.ground->plane.signedDistance(x) < kGroundBand * choice.ground->tolerance;
+    if (on_ground) choice.role[i] = PointRole::kGround;
+    above_band.push_back(on_ground ? 0 : 1);
+    vertices.push_back({x, static_cast<int>(i), reliability.sigma[i], true});
+  }
+  const SparseCells cells = BuildSparseCells(scene, vertices);
+  const Tetrahedra& t = cells.tetrahedra;
+  const std::vector<uint8_t> labels =
+      AboveGround(t, CutCells(t, cells.votes, std::vector<uint8_t>(t.cells.size(), 1), cut), choice.ground);
+  const CellComponents pieces = ConnectedCells(t, labels);
+  const int object = PieceAtFocus(t, pieces, choice.focus);
+  if (object < 0) return;
+  std::vector<int> piece = PieceOfVertex(t, pieces);
+  AdoptLoosePoints(t.points, above_band, piece);
+  for (size_t v = 0; v < piece.size(); ++v)
+    if (above_band[v] && piece[v] == object) choice.role[cells.scene_point[v]] = PointRole::kObject;
+}
+
+}  // namespace
+
+void ObjectOptions::Visit(OptionVisitor& v) {
+  v.Field({.name = "box",
+           .help = "Box around the object instead of an automatic choice: centre x y z and size x y z",
+           .unit = "world"},
+          box);
+  v.Field({.name = "ground",
+           .help = "Whether to look for the plane that the object stands on",
+           .choices = {"auto", "none"}},
+          ground);
+}
+
+ObjectChoice ChooseObject(const Scene& scene, const PointReliability& reliability, const ObjectOptions& options,
+                          const CutOptions& cut, const ImageSource* masks, Progress& progress) {
+  GLINT_CHECK_EQ(reliability.status.size(), scene.points.size());
+  const bool box_is_sound =
+      options.box.empty() ||
+      (options.box.size() == 6 && options.box[3] > 0 && options.box[4] > 0 && options.box[5] > 0 &&
+       std::all_of(options.box.begin(), options.box.end(), [](double x) { return std::isfinite(x); }));
+  if (!box_is_sound) throw InputError("", "seed.object.box", "expected centre x y z and three sizes above 0");
+  const std::vector<uint8_t> use = reliability.ReliableMask();
+  ObjectChoice choice;
+  choice.role.assign(scene.points.size(), PointRole::kUnused);
+  if (scene.views.empty()) return choice;
+  choice.focus = FindFocus(scene, use);
+  if (options.ground == "auto") choice.ground = FindGround(scene, use, choice.focus);
+  progress.ThrowIfCancelled();
+
+  if (!options.box.empty()) {
+    choice.role = RolesByBox(scene, use, options.box);
+    choice.chosen_by = "box";
+    return choice;
+  }
+  if (masks) {
+    const std::vector<int> balance = MaskBalance(scene, *masks);
+    for (size_t i = 0; i < balance.size(); ++i)
+      if (use[i]) choice.role[i] = balance[i] > 0 ? PointRole::kObject : PointRole::kContext;
+    choice.chosen_by = "masks";
+    if (std::count(choice.role.begin(), choice.role.end(), PointRole::kObject) >= 4) return choice;
+  }
+  FindByFocus(scene, reliability, use, cut, choice);
+  choice.chosen_by = choice.ground ? "ground and focus" : "focus";
+  return choice;
+}
+
+}  // namespace glint

@@ -1,0 +1,29 @@
+// The Delaunay triangulation of a set of scene points with the votes of their observations.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "colmap/scene.h"
+#include "seed/ray_votes.h"
+#include "seed/tetrahedra.h"
+
+namespace glint {
+
+struct SparseCells {
+  Tetrahedra tetrahedra;  // its points: the chosen scene points in order, then the extra ones
+  RayVotes votes;
+  std::vector<int> scene_point;  // per point of the triangulation; −1: extra
+};
+
+// A point of the triangulation. Scene points may be moved (snapped to the ground); extra ones have no lines of sight.
+struct SparseVertex {
+  Eigen::Vector3d position;
+  int scene_point = -1;
+  double sigma = 0;   // world units
+  bool solid = true;  // matter behind it; otherwise its lines only carve
+};
+
+SparseCells BuildSparseCells(const Scene& scene, const std::vector<SparseVertex>& vertices);
+
+}  // namespace glint
