@@ -16,7 +16,8 @@ int ResolveIndex(std::string_view text, size_t count, std::string_view kind, con
   const int64_t index = in.ParseNumber<int64_t>(text, fmt::format("the index of a {}", kind));
   const int64_t resolved = index < 0 ? index + static_cast<int64_t>(count) : index - 1;
   if (index == 0 || resolved < 0 || resolved >= static_cast<int64_t>(count)) {
-    in.Fail(fmt::format("expected the index of one of the {} {}s so far, found {}", count, kind, index));
+    in.Fail(fmt::format("expected the index of one of the {} {} so far, found {}", count,
+                        kind == "vertex" ? "vertices" : "normals", index));
   }
   return static_cast<int>(resolved);
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -115,21 +116,39 @@ struct Target {
   int index;
 };
 
-Target TargetOf(const PlyProperty& property, int num_scalars) {
-  if (property.is_list) return {Target::kIgnored, 0};
-  constexpr std::array<std::array<std::string_view, 3>, 5> kNames = {{{"x", "y", "z"},
-                                                                      {"nx", "ny", "nz"},
-                                                                      {"red", "green", "blue"},
-                                                                      {"diffuse_red", "diffuse_green", "diffuse_blue"},
-                                                                      {"r", "g", "b"}}};
-  constexpr std::array<Target::Kind, 5> kKinds = {Target::kPosition, Target::kNormal, Target::kColor, Target::kColor,
-                                                  Target::kColor};
-  for (size_t i = 0; i < kNames.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      if (kNames[i][k] == property.name) return {kKinds[i], k};
-    }
+// The three properties of one vector attribute. They count only together: a lone "b" is a scalar.
+struct Triple {
+  std::array<std::string_view, 3> names;
+  Target::Kind kind;
+};
+constexpr std::array<Triple, 5> kTriples = {{{{"x", "y", "z"}, Target::kPosition},
+                                             {{"nx", "ny", "nz"}, Target::kNormal},
+                                             {{"red", "green", "blue"}, Target::kColor},
+                                             {{"diffuse_red", "diffuse_green", "diffuse_blue"}, Target::kColor},
+                                             {{"r", "g", "b"}, Target::kColor}}};
+
+std::vector<Target> FindTargets(const PlyElement& element) {
+  const auto find = [&](std::string_view name) {
+    const auto& properties = element.properties;
+    const auto found = std::find_if(properties.begin(), properties.end(),
+                                    [&](const PlyProperty& p) { return p.name == name && !p.is_list; });
+    return static_cast<size_t>(found - properties.begin());
+  };
+  std::vector<Target> targets(element.properties.size(), Target{Target::kIgnored, 0});
+  std::array<bool, 4> is_taken = {};
+  for (const Triple& triple : kTriples) {
+    std::array<size_t, 3> at;
+    for (int k = 0; k < 3; ++k) at[k] = find(triple.names[k]);
+    if (is_taken[triple.kind] || *std::max_element(at.begin(), at.end()) == targets.size()) continue;
+    is_taken[triple.kind] = true;
+    for (int k = 0; k < 3; ++k) targets[at[k]] = {triple.kind, k};
   }
-  return {Target::kScalar, num_scalars};
+  int num_scalars = 0;
+  for (size_t p = 0; p < targets.size(); ++p) {
+    if (targets[p].kind != Target::kIgnored || element.properties[p].is_list) continue;
+    targets[p] = {Target::kScalar, num_scalars++};
+  }
+  return targets;
 }
 
 uint8_t ColorByte(double value, PlyType type) {
@@ -139,21 +158,18 @@ uint8_t ColorByte(double value, PlyType type) {
 }
 
 void ReadVertices(const PlyElement& element, PlyBody& body, const std::filesystem::path& path, TriangleMesh& mesh) {
-  std::vector<Target> targets;
-  bool has_position[3] = {}, has_normal[3] = {}, has_color[3] = {};
-  for (const PlyProperty& property : element.properties) {
-    const Target target = TargetOf(property, static_cast<int>(mesh.scalars.size()));
-    targets.push_back(target);
-    if (target.kind == Target::kPosition) has_position[target.index] = true;
-    if (target.kind == Target::kNormal) has_normal[target.index] = true;
-    if (target.kind == Target::kColor) has_color[target.index] = true;
-    if (target.kind == Target::kScalar) mesh.scalars.emplace_back(property.name, std::vector<float>(element.count));
-  }
-  const auto all = [](const bool(&has)[3]) { return has[0] && has[1] && has[2]; };
-  if (!all(has_position)) throw InputError(path.string(), "element vertex", "expected the properties x, y and z");
+  const std::vector<Target> targets = FindTargets(element);
+  const auto has = [&](Target::Kind kind) {
+    return std::any_of(targets.begin(), targets.end(), [&](const Target& target) { return target.kind == kind; });
+  };
+  if (!has(Target::kPosition)) throw InputError(path.string(), "element vertex", "expected the properties x, y and z");
   mesh.vertices.assign(element.count, Eigen::Vector3d::Zero());
-  if (all(has_normal)) mesh.normals.assign(element.count, Eigen::Vector3d::Zero());
-  if (all(has_color)) mesh.colors.assign(element.count, {0, 0, 0});
+  if (has(Target::kNormal)) mesh.normals.assign(element.count, Eigen::Vector3d::Zero());
+  if (has(Target::kColor)) mesh.colors.assign(element.count, {0, 0, 0});
+  for (size_t p = 0; p < targets.size(); ++p) {
+    if (targets[p].kind != Target::kScalar) continue;
+    mesh.scalars.emplace_back(element.properties[p].name, std::vector<float>(element.count));
+  }
 
   for (uint64_t i = 0; i < element.count; ++i) {
     body.BeginRecord("vertex", i);
@@ -166,10 +182,8 @@ void ReadVertices(const PlyElement& element, PlyBody& body, const std::filesyste
       const double value = body.Read(property.type);
       const Target target = targets[p];
       if (target.kind == Target::kPosition) mesh.vertices[i][target.index] = value;
-      if (target.kind == Target::kNormal && !mesh.normals.empty()) mesh.normals[i][target.index] = value;
-      if (target.kind == Target::kColor && !mesh.colors.empty()) {
-        mesh.colors[i][target.index] = ColorByte(value, property.type);
-      }
+      if (target.kind == Target::kNormal) mesh.normals[i][target.index] = value;
+      if (target.kind == Target::kColor) mesh.colors[i][target.index] = ColorByte(value, property.type);
       if (target.kind == Target::kScalar) mesh.scalars[target.index].second[i] = static_cast<float>(value);
     }
     if (!mesh.vertices[i].allFinite()) body.Fail("expected finite coordinates");
