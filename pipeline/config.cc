@@ -23,6 +23,7 @@ void OutputOptions::Visit(OptionVisitor& v) {
 }
 
 void Config::Visit(OptionVisitor& v) {
+  VisitSection(v, "seed", "The mesh to start on, from the sparse points.", seed);
   VisitSection(v, "given_mesh", "A mesh given with --mesh in place of the seed.", given_mesh);
   VisitSection(v, "detect", "Highlights in a single image.", detect);
   VisitSection(v, "gate", "Which of them agree with the surface, a light and the other views.", gate);

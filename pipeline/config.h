@@ -10,6 +10,7 @@
 #include "highlights/gate.h"
 #include "pipeline/given_mesh.h"
 #include "refine/refine.h"
+#include "seed/build_seed.h"
 
 namespace glint {
 
@@ -22,6 +23,7 @@ struct OutputOptions {
 };
 
 struct Config {
+  SeedOptions seed;
   GivenMeshOptions given_mesh;
   DetectOptions detect;
   GateOptions gate;

@@ -136,12 +136,18 @@ void Flow::ReadProject() {
 }
 
 void Flow::MakeSeed() {
+  if (scene_.points.empty() && arguments_.mesh.empty())
+    throw InputError(summary_.model.string(), "points3D",
+                     "expected sparse points, found none; or give a mesh with --mesh");
   const SeedStageResult seed = RunSeedStage(scene_, *images_, arguments_.mesh, config_, terminal_);
   for (const std::string& note : seed.notes) Note(note);
   for (const std::string& warning : seed.warnings) terminal_.Warn(warning);
+  summary_.seed_report = seed.report;
+  terminal_.Finish();
+  terminal_.Info(seed.report);
+  if (seed.mesh.empty()) GiveUp({}, "no seed: the sparse points enclose no object; give a mesh with --mesh");
   WriteMesh(out_.Seed(), seed.mesh);
   WriteFlags(out_.Stages() / "points_on_object.txt", seed.point_used);
-  summary_.seed_report = seed.report;
 }
 
 void Flow::Detect() {

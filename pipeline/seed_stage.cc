@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/error.h"
 #include "pipeline/given_mesh.h"
+#include "seed/build_seed.h"
 
 namespace glint {
 namespace {
@@ -22,12 +22,24 @@ SeedStageResult FromGivenMesh(const Scene& scene, const std::filesystem::path& p
   return result;
 }
 
+SeedStageResult FromPoints(const Scene& scene, const ImageSource& images, const SeedOptions& options,
+                           Progress& progress) {
+  SeedSummary summary;
+  SeedResult seed = BuildSeed(scene, options, &summary, progress, &images);
+  SeedStageResult result;
+  result.mesh = std::move(seed.smooth);
+  result.point_used = std::move(seed.point_used);
+  result.report = summary.BriefReport();
+  result.warnings = std::move(summary.warnings);
+  return result;
+}
+
 }  // namespace
 
-SeedStageResult RunSeedStage(const Scene& scene, const ImageSource&, const std::filesystem::path& given_mesh,
-                             const Config& config, Progress&) {
-  if (given_mesh.empty()) throw NoResultError("no mesh given with --mesh");
-  return FromGivenMesh(scene, given_mesh, config.given_mesh);
+SeedStageResult RunSeedStage(const Scene& scene, const ImageSource& images, const std::filesystem::path& given_mesh,
+                             const Config& config, Progress& progress) {
+  return given_mesh.empty() ? FromPoints(scene, images, config.seed, progress)
+                            : FromGivenMesh(scene, given_mesh, config.given_mesh);
 }
 
 }  // namespace glint

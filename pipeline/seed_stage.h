@@ -15,14 +15,14 @@
 namespace glint {
 
 struct SeedStageResult {
-  TriangleMesh mesh;                // closed, oriented outward, in the model's frame
+  TriangleMesh mesh;                // closed, oriented outward, in the model's frame; empty: `warnings` say why
   std::vector<uint8_t> point_used;  // a scene point: lies on the object
   std::string report;               // one line for people
   std::vector<std::string> notes;
   std::vector<std::string> warnings;
 };
 
-// `given_mesh`: empty to make the seed from the points. Throws InputError or NoResultError.
+// `given_mesh`: empty to make the seed from the points. Throws InputError.
 SeedStageResult RunSeedStage(const Scene& scene, const ImageSource& images, const std::filesystem::path& given_mesh,
                              const Config& config, Progress& progress);
 
