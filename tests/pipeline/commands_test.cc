@@ -139,11 +139,11 @@ TEST_F(Commands, CompareThroughASimilarity) {
 
 TEST_F(Commands, SynthDetectInspect) {
   const ProgramResult synth =
-      RunGlint({"synth", "sphere", "-o", Path("s"), "--views", "4", "--size", "160x120", "--seed", "3", "-q"});
+      RunGlint({"synth", "sphere", "-o", Path("s"), "--views", "8", "--size", "160x120", "--seed", "3", "-q"});
   ASSERT_EQ(synth.exit_code, 0) << synth.err;
   EXPECT_EQ(synth.err, "");
   EXPECT_THAT(RunGlint({"inspect", Path("s")}).out,
-              AllOf(HasSubstr("views        4"), HasSubstr("PINHOLE 160x120"), HasSubstr("4 of 4 found")));
+              AllOf(HasSubstr("views        8"), HasSubstr("PINHOLE 160x120"), HasSubstr("8 of 8 found")));
   ASSERT_EQ(RunGlint({"detect", Path("s"), "-o", Path("m")}).exit_code, 0);
   for (const char* name : {"view_000.jpg.png", "view_003.jpg.png"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "m" / name)) << name;

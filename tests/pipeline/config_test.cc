@@ -156,12 +156,12 @@ TEST(Config, DefaultsAreValidAndEveryOptionIsExplained) {
 TEST(Config, DefaultFileInTheRepositoryIsUpToDate) {
   std::stringstream text;
   text << std::ifstream(GLINT_SOURCE_DIR "/configs/default.yaml", std::ios::binary).rdbuf();
-  EXPECT_EQ(text.str(), DefaultConfigYaml()) << "write it anew: glint config > configs/default.yaml";
+  EXPECT_TRUE(text.str() == DefaultConfigYaml()) << "write it anew: glint config > configs/default.yaml";
 }
 
 TEST(Config, DefaultFileReadsBackToTheDefaults) {
   const Config config = ResolveConfig(GLINT_SOURCE_DIR "/configs/default.yaml", {});
-  EXPECT_EQ(ConfigYaml(config, ""), ConfigYaml(Config(), ""));
+  EXPECT_TRUE(ConfigYaml(config, "") == ConfigYaml(Config(), ""));
 }
 
 TEST(Config, RangeViolationsNameWhereTheValueCameFrom) {
