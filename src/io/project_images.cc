@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/check.h"
 #include "core/error.h"
+#include "io/jpeg_check.h"
 
 namespace glint {
 namespace {
@@ -26,20 +27,13 @@ std::vector<uchar> ReadBytes(const fs::path& path) {
   return bytes;
 }
 
-// Decoders fill what a cut JPEG lacks with grey and say nothing: look for the end-of-image marker (FF D9) instead.
-// Cameras append previews and padding after it, so it may stand anywhere in the second half.
-bool IsCutJpeg(const std::vector<uchar>& bytes) {
-  if (bytes.size() < 4 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
-  for (size_t i = bytes.size() - 1; i > bytes.size() / 2; --i) {
-    if (bytes[i] == 0xD9 && bytes[i - 1] == 0xFF) return false;
-  }
-  return true;
-}
-
 cv::Mat Decode(const fs::path& path, int flags) {
   const std::vector<uchar> bytes = ReadBytes(path);
-  if (IsCutJpeg(bytes)) {
-    throw InputError(path.string(), "", fmt::format("expected a whole JPEG, found one cut at {} bytes", bytes.size()));
+  // OpenCV fills what a cut or damaged JPEG lacks with grey and says nothing to us.
+  if (internal::IsJpeg(bytes.data(), bytes.size())) {
+    if (const auto damage = internal::JpegDamage(bytes.data(), bytes.size())) {
+      throw InputError(path.string(), "", fmt::format("expected a whole JPEG of {} bytes: {}", bytes.size(), *damage));
+    }
   }
   cv::Mat image;
   try {
