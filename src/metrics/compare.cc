@@ -6,6 +6,8 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "geometry/closest_point.h"
+#include "geometry/edge_topology.h"
+#include "geometry/pseudo_normals.h"
 #include "metrics/surface_samples.h"
 
 namespace glint {
@@ -35,22 +37,18 @@ class NearestFinder {
   ClosestPointQuery query_;
 };
 
+// Interpolated vertex normals where the mesh has them, else the face's.
+Eigen::Vector3d NormalAt(const TriangleMesh& mesh, int face, const Eigen::Vector3d& weights) {
+  if (mesh.normals.size() != mesh.vertices.size()) return FaceNormal(mesh, face);
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) n += weights[k] * mesh.normals[mesh.faces[face][k]];
+  return n;
+}
+
 // The vertex normals of the mesh where it has them, else angle-weighted ones; zero where undefined.
 std::vector<Eigen::Vector3d> VertexNormals(const TriangleMesh& mesh) {
   if (mesh.normals.size() == mesh.vertices.size()) return mesh.normals;
-  std::vector<Eigen::Vector3d> normals(mesh.vertices.size(), Eigen::Vector3d::Zero());
-  for (size_t f = 0; f < mesh.faces.size(); ++f) {
-    const Eigen::Vector3d n = FaceNormal(mesh, f);
-    if (n.isZero()) continue;
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d& a = mesh.vertices[mesh.faces[f][k]];
-      const Eigen::Vector3d e1 = mesh.vertices[mesh.faces[f][(k + 1) % 3]] - a;
-      const Eigen::Vector3d e2 = mesh.vertices[mesh.faces[f][(k + 2) % 3]] - a;
-      normals[mesh.faces[f][k]] += std::atan2(e1.cross(e2).norm(), e1.dot(e2)) * n;
-    }
-  }
-  for (Eigen::Vector3d& n : normals) n.normalize();
-  return normals;
+  return ComputePseudoNormals(mesh, BuildEdgeTopology(mesh)).vertex;
 }
 
 int NearestCorner(const TriangleMesh& mesh, int face, const Eigen::Vector3d& weights) {
@@ -94,15 +92,12 @@ FScore ScoreAt(double threshold_rel, double diagonal, const std::vector<double>&
 
 void MeasureAtReferenceVertices(const TriangleMesh& mesh, const TriangleMesh& reference, const NearestFinder& finder,
                                 MeshComparison& out) {
-  const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
   const std::vector<Eigen::Vector3d> truth = VertexNormals(reference);
   out.reference_distance.resize(reference.vertices.size());
   out.reference_normal_deg.resize(reference.vertices.size());
   ParallelFor(reference.vertices.size(), kGrain, [&](size_t i) {
     const Nearest nearest = finder.Find(reference.vertices[i]);
-    const Eigen::Vector3i& face = mesh.faces[nearest.face];
-    Eigen::Vector3d n = Eigen::Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) n += nearest.weights[k] * normals[face[k]];
+    const Eigen::Vector3d n = NormalAt(mesh, nearest.face, nearest.weights);
     out.reference_distance[i] = static_cast<float>(nearest.distance);
     const bool defined = n.norm() > 0 && truth[i].norm() > 0;
     const double angle = std::atan2(n.cross(truth[i]).norm(), n.dot(truth[i]));

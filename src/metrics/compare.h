@@ -58,8 +58,8 @@ struct MeshComparison {
 };
 
 // Both meshes in the same frame, both with at least one face. Distances are taken at low-discrepancy samples of equal
-// area; normals at the reference's vertices against the closest point of the mesh, with interpolated vertex
-// normals (those of the mesh where present, else angle-weighted). `reference_mask`: empty, or per vertex of the
+// area; normals at the reference's vertices (its own, else angle-weighted ones) against the closest point of the mesh
+// (its vertex normals interpolated, else the normal of the face). `reference_mask`: empty, or per vertex of the
 // reference, non-zero where to measure; then samples of the reference count where the nearest corner of their face is
 // in the mask, samples of the mesh where that holds for their closest point.
 MeshComparison CompareMeshes(const TriangleMesh& mesh, const TriangleMesh& reference,

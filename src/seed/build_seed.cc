@@ -93,7 +93,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     return out;
   }
   out.mesh = surface.mesh;
-  out.smooth = FairThroughPoints(surface.mesh, Attachments(surface, reliability), options.smooth);
+  out.smooth = FairThroughPoints(surface.mesh, Attachments(surface, reliability), options.smooth).mesh;
   for (int point : surface.scene_point)
     if (point >= 0) out.point_used[point] = 1;
   out.region = BoundingBox(out.mesh).merged(BoundingBox(out.smooth));

@@ -18,6 +18,7 @@ using Triplet = Eigen::Triplet<double>;
 
 constexpr double kMinSigmaRel = 5e-4;  // of the diagonal: no sparse point is surer than this
 constexpr double kMaxCot = 10;         // slivers must not dominate
+constexpr double kTrustedRange = 4;    // usual distances: farther attachments lose most of their weight
 
 double Median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
@@ -77,19 +78,49 @@ std::vector<Foot> FeetOf(const std::vector<Attachment>& attachments, const Trian
   return feet;
 }
 
-// Weights 1/σ², lowered for those that disagree with most (Geman–McClure).
-std::vector<double> RobustWeights(const std::vector<Attachment>& attachments, const std::vector<Foot>& feet,
-                                  double min_sigma, bool trust_distances) {
+// The share of its weight that each keeps (Geman–McClure against the usual distance).
+std::vector<double> Trust(const std::vector<Attachment>& attachments, const std::vector<Foot>& feet, double min_sigma) {
   std::vector<double> distances;
   for (const Foot& f : feet) distances.push_back(f.distance);
   const double typical = std::max(1.4826 * Median(distances), min_sigma);
-  std::vector<double> weights;
+  std::vector<double> trust;
   for (size_t i = 0; i < feet.size(); ++i) {
-    const double sigma = std::max(attachments[i].sigma, min_sigma);
-    const double r = feet[i].distance / (4 * std::max(typical, sigma));
-    weights.push_back(1 / (sigma * sigma) / (trust_distances ? std::pow(1 + r * r, 2) : 1));
+    const double r = feet[i].distance / (kTrustedRange * std::max(typical, attachments[i].sigma));
+    trust.push_back(1 / std::pow(1 + r * r, 2));
   }
-  return weights;
+  return trust;
+}
+
+// The thin-plate matrix λ Lᵀ A⁻¹ L.
+Sparse ThinPlate(const Laplacian& laplacian, double lambda) {
+  const Eigen::VectorXd inverse_area = laplacian.area.cwiseInverse();
+  return Sparse(laplacian.stiffness.transpose() * inverse_area.asDiagonal() * laplacian.stiffness) * lambda;
+}
+
+struct Springs {
+  std::vector<Triplet> entries;
+  Eigen::MatrixX3d right;
+
+  explicit Springs(int n) : right(Eigen::MatrixX3d::Zero(n, 3)) {}
+
+  void Hold(int vertex, const Eigen::Vector3d& at, double weight) {
+    entries.emplace_back(vertex, vertex, weight);
+    right.row(vertex) += weight * at.transpose();
+  }
+  void Attach(const Foot& foot, const Eigen::Vector3d& at, double weight) {
+    for (int j = 0; j < 3; ++j) {
+      right.row(foot.face[j]) += weight * foot.weights[j] * at.transpose();
+      for (int k = 0; k < 3; ++k)
+        entries.emplace_back(foot.face[j], foot.face[k], weight * foot.weights[j] * foot.weights[k]);
+    }
+  }
+};
+
+// Softer from round to round: four times stiffer at first, as the options say at the end.
+double SmoothingOf(const FairOptions& options, int round) {
+  const int soft_rounds = 2;  // at the end
+  const double left = std::max(0, options.rounds - soft_rounds - round);
+  return options.smoothing * std::pow(4.0, left / std::max(1, options.rounds - soft_rounds));
 }
 
 }  // namespace
@@ -115,51 +146,41 @@ void FairOptions::Visit(OptionVisitor& v) {
   v.Field({.name = "rounds", .help = "Solves of the fairing", .min = 1, .max = 50}, rounds);
 }
 
-TriangleMesh FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                               const FairOptions& options) {
+FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
+                             const FairOptions& options) {
   GLINT_CHECK(!mesh.empty());
   const double diagonal = Diagonal(mesh);
   const TriangleMesh start = RemeshEvenly(mesh, options.edge_rel * diagonal);
-  if (attachments.empty()) return start;
-  TriangleMesh out = start;
-  const int n = static_cast<int>(out.vertices.size());
+  FairResult out{start, std::vector<double>(attachments.size(), 1.0)};
+  if (attachments.empty()) return out;
+  const int n = static_cast<int>(start.vertices.size());
   const double area = SurfaceArea(start);
-  const double count = EffectiveCount(attachments, area);
+  const double density = EffectiveCount(attachments, area) / area;
   const double min_sigma = kMinSigmaRel * diagonal;
   for (int round = 0; round < options.rounds; ++round) {
-    const Laplacian laplacian = CotanLaplacian(out);
-    const std::vector<Foot> feet = FeetOf(attachments, out);
-    // The first distances are those to the facets' chords: large also for good points.
-    const std::vector<double> weights = RobustWeights(attachments, feet, min_sigma, round > 0);
-    // Thin plate on springs of density ρw bends over ℓ = (λ/ρw)^¼; ℓ = smoothing · ρ^−½.
-    const double density = count / area;
+    const Laplacian laplacian = CotanLaplacian(out.mesh);
+    const std::vector<Foot> feet = FeetOf(attachments, out.mesh);
+    // The first distances are those to flat facets: large also for good points.
+    if (round > 0) out.trust = Trust(attachments, feet, min_sigma);
+    std::vector<double> weights;
+    for (size_t i = 0; i < attachments.size(); ++i)
+      weights.push_back(out.trust[i] / std::pow(std::max(attachments[i].sigma, min_sigma), 2));
+    // A thin plate on springs of density ρw bends over ℓ = (λ/ρw)^¼; ℓ = smoothing · ρ^−½.
     const double spring = Median(weights);
-    const double lambda = std::pow(options.smoothing, 4) * spring / density;
-    const double stay = options.stay * spring * density;
-
-    const Eigen::VectorXd inverse_area = laplacian.area.cwiseInverse();
-    Sparse system = Sparse(laplacian.stiffness.transpose() * inverse_area.asDiagonal() * laplacian.stiffness) * lambda;
-    std::vector<Triplet> entries;
-    Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(n, 3);
-    for (int v = 0; v < n; ++v) {
-      entries.emplace_back(v, v, stay * laplacian.area[v]);
-      right.row(v) += stay * laplacian.area[v] * start.vertices[v].transpose();
-    }
-    for (size_t i = 0; i < feet.size(); ++i)
-      for (int j = 0; j < 3; ++j) {
-        right.row(feet[i].face[j]) += weights[i] * feet[i].weights[j] * attachments[i].position.transpose();
-        for (int k = 0; k < 3; ++k)
-          entries.emplace_back(feet[i].face[j], feet[i].face[k], weights[i] * feet[i].weights[j] * feet[i].weights[k]);
-      }
-    Sparse springs(n, n);
-    springs.setFromTriplets(entries.begin(), entries.end());
-    system += springs;
+    const double lambda = std::pow(SmoothingOf(options, round), 4) * spring / density;
+    Springs springs(n);
+    for (int v = 0; v < n; ++v) springs.Hold(v, start.vertices[v], options.stay * spring * density * laplacian.area[v]);
+    for (size_t i = 0; i < feet.size(); ++i) springs.Attach(feet[i], attachments[i].position, weights[i]);
+    Sparse system(n, n);
+    system.setFromTriplets(springs.entries.begin(), springs.entries.end());
+    system += ThinPlate(laplacian, lambda);
     const Eigen::SimplicialLDLT<Sparse> solver(system);
     if (solver.info() != Eigen::Success) return out;  // singular: what stands so far is closed and sound
-    const Eigen::MatrixX3d x = solver.solve(right);
+    const Eigen::MatrixX3d x = solver.solve(springs.right);
     if (!x.allFinite()) return out;
-    for (int v = 0; v < n; ++v) out.vertices[v] = x.row(v);
+    for (int v = 0; v < n; ++v) out.mesh.vertices[v] = x.row(v);
   }
+  out.trust = Trust(attachments, FeetOf(attachments, out.mesh), min_sigma);
   return out;
 }
 

@@ -11,9 +11,9 @@ namespace glint {
 
 struct FairOptions {
   double edge_rel = 0.015;
-  double smoothing = 0.5;
-  double stay = 0.002;
-  int rounds = 4;
+  double smoothing = 0.2;
+  double stay = 0.0002;
+  int rounds = 6;
 
   void Visit(OptionVisitor& v);
 };
@@ -24,12 +24,21 @@ struct Attachment {
   double sigma;
 };
 
+struct FairResult {
+  TriangleMesh mesh;
+  // Per attachment: how much of its weight it kept, 0 … 1; low for those that disagree with the surface that the
+  // others make.
+  std::vector<double> trust;
+};
+
 // Remeshes evenly, then minimises (sparse Cholesky; attached again and robustly weighted each round)
 //   λ ∫‖Δx‖² + Σᵢ wᵢ ‖x(attached point of i) − pᵢ‖² + stay · (the same density of attachments all over the start)
 // with λ set so that the surface bends over `smoothing` times the spacing of the attachments. The thin-plate energy is
 // the linearised Willmore energy, whose closed minimisers are spheres: between points a convex body bulges as it
-// should, where flat facets cut 2–3 % off. The mesh must be closed and manifold; topology is kept.
-TriangleMesh FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                               const FairOptions& options);
+// should, where flat facets cut 2–3 % off. The rounds go from stiff to soft, so that points which disagree with their
+// neighbourhood lose their weight before the surface could bend to them. The mesh must be closed and manifold; topology
+// is kept.
+FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
+                             const FairOptions& options);
 
 }  // namespace glint

@@ -75,6 +75,15 @@ Plane FitPlane(const std::vector<Eigen::Vector3d>& points, const Plane& from, do
   return Plane(normal, mean);
 }
 
+// Three robust standard deviations of the points on the plane, within sensible limits.
+double Spread(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance) {
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& p : points)
+    if (plane.absDistance(p) < tolerance) distances.push_back(plane.absDistance(p));
+  std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
+  return std::clamp(3 * 1.4826 * distances[distances.size() / 2], 0.1 * tolerance, tolerance);
+}
+
 // The plane must reach round below the focus: points on it in most directions from the foot of the focus.
 bool Surrounds(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance, const Focus& focus) {
   const Eigen::Vector3d foot = plane.projection(focus.center);
@@ -122,7 +131,7 @@ std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint
     return std::nullopt;
   if (best.signedDistance(focus.center) < -0.1 * focus.distance) return std::nullopt;
   if (!Surrounds(points, best, tolerance, focus)) return std::nullopt;
-  return GroundPlane{best, tolerance};
+  return GroundPlane{best, Spread(points, best, tolerance)};
 }
 
 }  // namespace glint

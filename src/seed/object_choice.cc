@@ -13,11 +13,10 @@
 namespace glint {
 namespace {
 
-constexpr double kReachRel = 1.5;     // of the focus distance: what is farther from the focus is not looked at
-constexpr double kNearRel = 0.25;     // of the focus distance: how near the focus the object is expected
-constexpr double kAboveGround = 1.5;  // ground tolerances: matter lower than this joins neighbours on the table
-constexpr double kGroundBand = 2;     // ground tolerances: points this close to the plane are the ground's
-constexpr double kMaxGap = 4;         // spacings from a point to the piece that it is counted to
+constexpr double kReachRel = 1.5;          // of the focus distance: what is farther from the focus is not looked at
+constexpr double kNearRel = 0.25;          // of the focus distance: how near the focus the object is expected
+constexpr double kAboveGroundRel = 0.015;  // of the focus distance: matter lower than this joins neighbours on a table
+constexpr double kMaxGap = 4;              // spacings from a point to the piece that it is counted to
 
 std::vector<PointRole> RolesByBox(const Scene& scene, const std::vector<uint8_t>& use, const std::vector<double>& box) {
   const Eigen::Vector3d center(box[0], box[1], box[2]), half = Eigen::Vector3d(box[3], box[4], box[5]) / 2;
@@ -104,12 +103,11 @@ void AdoptLoosePoints(const std::vector<Eigen::Vector3d>& points, const std::vec
 
 // Whether matter may be in a cell when pieces are told apart: above the ground and finite.
 std::vector<uint8_t> AboveGround(const Tetrahedra& tetrahedra, const std::vector<uint8_t>& labels,
-                                 const std::optional<GroundPlane>& ground) {
+                                 const std::optional<GroundPlane>& ground, double min_height) {
   std::vector<uint8_t> above = labels;
   if (!ground) return above;
   for (int c = 0; c < static_cast<int>(labels.size()); ++c)
-    if (labels[c] && ground->plane.signedDistance(tetrahedra.Centroid(c)) < kAboveGround * ground->tolerance)
-      above[c] = 0;
+    if (labels[c] && ground->plane.signedDistance(tetrahedra.Centroid(c)) < min_height) above[c] = 0;
   return above;
 }
 
@@ -122,8 +120,7 @@ void FindByFocus(const Scene& scene, const PointReliability& reliability, const 
     if (!use[i]) continue;
     choice.role[i] = PointRole::kContext;
     if ((x - choice.focus.center).norm() > kReachRel * choice.focus.distance) continue;
-    const bool on_ground =
-        choice.ground && choice.ground->plane.signedDistance(x) < kGroundBand * choice.ground->tolerance;
+    const bool on_ground = choice.ground && choice.ground->plane.signedDistance(x) < choice.ground->tolerance;
     if (on_ground) choice.role[i] = PointRole::kGround;
     above_band.push_back(on_ground ? 0 : 1);
     vertices.push_back({x, static_cast<int>(i), reliability.sigma[i], true});
@@ -131,7 +128,8 @@ void FindByFocus(const Scene& scene, const PointReliability& reliability, const 
   const SparseCells cells = BuildSparseCells(scene, vertices);
   const Tetrahedra& t = cells.tetrahedra;
   const std::vector<uint8_t> labels =
-      AboveGround(t, CutCells(t, cells.votes, std::vector<uint8_t>(t.cells.size(), 1), cut), choice.ground);
+      AboveGround(t, CutCells(t, cells.votes, std::vector<uint8_t>(t.cells.size(), 1), cut), choice.ground,
+                  kAboveGroundRel * choice.focus.distance);
   const CellComponents pieces = ConnectedCells(t, labels);
   const int object = PieceAtFocus(t, pieces, choice.focus);
   if (object < 0) return;

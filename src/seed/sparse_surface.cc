@@ -10,9 +10,8 @@
 namespace glint {
 namespace {
 
-constexpr double kReach = 1.0;     // object diagonals around the object: context this near carves
-constexpr int kBaseGrid = 24;      // points across the hidden ground
-constexpr double kBaseBand = 1.0;  // ground tolerances: foot points this close to the plane count as on it
+constexpr double kReach = 1.0;  // object diagonals around the object: context this near carves
+constexpr int kBaseGrid = 24;   // points across the hidden ground
 
 enum class VertexKind : uint8_t { kObject, kGround, kContext };
 
@@ -67,8 +66,7 @@ Vertices ChooseVertices(const Scene& scene, const PointReliability& reliability,
     Eigen::Vector3d x = scene.points[i].position;
     if (box.exteriorDistance(x) > reach) continue;
     const bool object = choice.role[i] == PointRole::kObject;
-    const bool ground =
-        choice.ground && std::abs(choice.ground->plane.signedDistance(x)) < kBaseBand * choice.ground->tolerance;
+    const bool ground = choice.ground && std::abs(choice.ground->plane.signedDistance(x)) < choice.ground->tolerance;
     if (ground && !object) x = choice.ground->plane.projection(x);
     out.Add({x, static_cast<int>(i), reliability.sigma[i], object},
             object ? VertexKind::kObject : (ground ? VertexKind::kGround : VertexKind::kContext));
