@@ -1,9 +1,7 @@
-// Sphere tracing (Hart 1996) with a Newton polish.
+#include "synthetic/ray_march.h"
+
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
-#include "synthetic/shapes.h"
 
 namespace glint {
 namespace {
@@ -11,21 +9,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kMaxSteps = 400;
-constexpr double kNear = 1e-4;      // of the radius: where Newton's method takes over
-constexpr double kTouching = 1e-5;  // of the radius: a shadow ray that comes so near is blocked
 
-// The part of the ray inside the bounding sphere; empty (first > second) where it misses.
-std::pair<double, double> ClipToBounds(const ImplicitShape& shape, const Vector3d& origin, const Vector3d& direction) {
-  const Vector3d to_center = shape.center() - origin;
-  const double middle = to_center.dot(direction);
-  const double radius = shape.radius() * 1.001;
-  const double discriminant = radius * radius - (to_center - middle * direction).squaredNorm();
-  if (discriminant < 0) return {1, 0};
-  const double half = std::sqrt(discriminant);
-  return {middle - half, middle + half};
-}
-
-// The parameter at which the march comes within `near` of the surface; negative where it does not.
+// The parameter at which the march comes within `near` of the surface; negative where it does not (Hart 1996).
 double March(const ImplicitShape& shape, const Vector3d& origin, const Vector3d& direction, double t_min, double t_max,
              double near) {
   const auto [enter, leave] = ClipToBounds(shape, origin, direction);
@@ -41,21 +26,35 @@ double March(const ImplicitShape& shape, const Vector3d& origin, const Vector3d&
 
 }  // namespace
 
-std::optional<ShapeHit> TraceRay(const ImplicitShape& shape, const Vector3d& origin, const Vector3d& direction,
-                                 double t_min, double t_max) {
-  double t = March(shape, origin, direction, t_min, t_max, kNear * shape.radius());
-  if (t < 0) return std::nullopt;
+std::pair<double, double> ClipToBounds(const ImplicitShape& shape, const Vector3d& origin, const Vector3d& direction) {
+  const Vector3d to_center = shape.center() - origin;
+  const double middle = to_center.dot(direction);
+  const double radius = shape.radius() * 1.001;
+  const double discriminant = radius * radius - (to_center - middle * direction).squaredNorm();
+  if (discriminant < 0) return {1, 0};
+  const double half = std::sqrt(discriminant);
+  return {middle - half, middle + half};
+}
+
+ShapeHit PolishHit(const ImplicitShape& shape, const Vector3d& origin, const Vector3d& direction, double t) {
   Vector3d x = origin + t * direction, gradient = shape.Gradient(x);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 5; ++i) {
     const double slope = gradient.dot(direction);
     if (slope > -0.02 * gradient.norm()) break;  // grazing: near enough as it is
     const double step = -shape.Value(x) / slope;
     if (std::abs(step) > 0.01 * shape.radius()) break;
     x = origin + (t += step) * direction;
     gradient = shape.Gradient(x);
-    if (std::abs(step) < 1e-10 * shape.radius()) break;
+    if (std::abs(step) < 1e-8 * shape.radius()) break;  // quadratic: the next step would be lost in rounding
   }
-  return ShapeHit{t, x, gradient.normalized()};
+  return {t, x, gradient.normalized()};
+}
+
+std::optional<ShapeHit> TraceRay(const ImplicitShape& shape, const Vector3d& origin, const Vector3d& direction,
+                                 double t_min, double t_max) {
+  const double t = March(shape, origin, direction, t_min, t_max, kNearSurface * shape.radius());
+  if (t < 0) return std::nullopt;
+  return PolishHit(shape, origin, direction, t);
 }
 
 bool RayMeets(const ImplicitShape& shape, const Vector3d& origin, const Vector3d& direction, double t_min,

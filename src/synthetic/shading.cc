@@ -132,7 +132,7 @@ Shading Shade(const Stage& stage, const StageView& view, const SurfaceHit& hit, 
   const double footprint = hit.t / MeanFocalLength(view.camera) / std::max(0.05, -direction.dot(hit.normal));
   const Array3d albedo = hit.kind == SurfaceKind::kGround
                              ? stage.surroundings.GroundAlbedo(hit.position.x(), hit.position.y(), footprint)
-                             : stage.surroundings.InteriorAlbedo(hit.position, footprint);
+                             : stage.surroundings.InteriorAlbedo(hit.position, hit.normal, footprint);
   const Array3d light = DirectLight(stage, view, hit, -direction, sample).diffuse +
                         stage.surroundings.Ambient(hit.normal) * Crevice(stage, hit);
   Array3d radiance = albedo * light;

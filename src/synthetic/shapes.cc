@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "synthetic/random.h"
+#include "synthetic/waves.h"
 
 namespace glint {
 namespace {
@@ -66,52 +67,12 @@ class Torus : public ImplicitShape {
   Vector3d axis_;
 };
 
-// A sum of plane sine waves.
-class Waves {
- public:
-  Waves() = default;
-  // `slope`: amplitude times wave number of each wave.
-  Waves(Random& random, int count, double min_number, double max_number, double slope, bool flat) {
-    for (int i = 0; i < count; ++i) {
-      const double number = random.Uniform(min_number, max_number);
-      Vector3d k = random.UnitVector();
-      if (flat) k.z() = 0;
-      waves_.push_back({k.normalized() * number, slope / number, random.Uniform(0, 2 * std::numbers::pi)});
-      slope_bound_ += slope;
-    }
-  }
-  double Value(const Vector3d& x) const {
-    double sum = 0;
-    for (const Wave& w : waves_) sum += w.amplitude * std::sin(w.k.dot(x) + w.phase);
-    return sum;
-  }
-  Vector3d Gradient(const Vector3d& x) const {
-    Vector3d sum = Vector3d::Zero();
-    for (const Wave& w : waves_) sum += w.amplitude * std::cos(w.k.dot(x) + w.phase) * w.k;
-    return sum;
-  }
-  double slope_bound() const { return slope_bound_; }
-  double amplitude_bound() const {
-    double sum = 0;
-    for (const Wave& w : waves_) sum += w.amplitude;
-    return sum;
-  }
-
- private:
-  struct Wave {
-    Vector3d k;
-    double amplitude, phase;
-  };
-  std::vector<Wave> waves_;
-  double slope_bound_ = 0;
-};
-
 // |x| - 1 - waves: star-shaped, and so a single closed surface, since the waves' slopes sum to less than one.
 class Blob : public ImplicitShape {
  public:
   explicit Blob(uint64_t seed) {
     Random random({seed, 13});
-    waves_ = Waves(random, 5, 2.2, 4.2, 0.13, false);
+    waves_ = Waves(random, 6, 2.6, 5.0, 0.14, false);
     lipschitz_ = 1 + waves_.slope_bound();
     radius_ = 1 + waves_.amplitude_bound();
   }
@@ -123,17 +84,12 @@ class Blob : public ImplicitShape {
   double lipschitz_ = 1;
 };
 
-// log-sum-exp: a smooth maximum, at least the maximum, whose gradient is a weighted mean of the gradients.
-template <size_t kCount>
-double SmoothMax(const std::array<double, kCount>& values, double width,
-                 std::array<double, kCount>* weights = nullptr) {
-  const double top = *std::max_element(values.begin(), values.end());
-  double sum = 0;
-  std::array<double, kCount> terms;
-  for (size_t i = 0; i < kCount; ++i) sum += terms[i] = std::exp((values[i] - top) / width);
-  if (weights)
-    for (size_t i = 0; i < kCount; ++i) (*weights)[i] = terms[i] / sum;
-  return top + width * std::log(sum);
+// A maximum that is smooth (twice differentiable) where a and b differ by less than `width`, else exact; never less
+// than the maximum. `weight_a`: its derivative by a, in [0, 1]; that by b is the rest.
+double SmoothMax(double a, double b, double width, double* weight_a = nullptr) {
+  const double overlap = std::max(1 - std::abs(a - b) / width, 0.0);
+  if (weight_a) *weight_a = a > b ? 1 - 0.5 * overlap * overlap : 0.5 * overlap * overlap;
+  return std::max(a, b) + width / 6 * overlap * overlap * overlap;
 }
 
 // A slab between two height fields with the outline of a superellipse (exponent 4), all edges rounded.
@@ -144,25 +100,30 @@ class Slab : public ImplicitShape {
     double curve_x, curve_y;         // top: -curve_x x² - curve_y y²
     double bottom;                   // height of the bottom's middle below the top's
     double bottom_curve;             // of the bottom, as a fraction of the top's
-    double rounding;
+    double rounding;                 // difference of distances over which faces blend
   };
   Slab(const Form& form, const Waves& waves) : form_(form), waves_(waves) {
     radius_ = std::hypot(form.half_length, form.half_width) + form.rounding;
     const double slope = 2 * radius_ * std::max(form.curve_x, form.curve_y) + waves.slope_bound();
     lipschitz_ = std::hypot(1, slope);
   }
-  double Value(const Vector3d& x) const override { return SmoothMax(Sides(x), form_.rounding); }
+  double Value(const Vector3d& x) const override {
+    const auto [top, bottom, side] = Sides(x);
+    return SmoothMax(SmoothMax(top, bottom, form_.rounding), side, form_.rounding);
+  }
   Vector3d Gradient(const Vector3d& x) const override {
-    std::array<double, 3> weight;
-    SmoothMax(Sides(x), form_.rounding, &weight);
+    const auto [top_value, bottom_value, side_value] = Sides(x);
+    double top_weight, height_weight;
+    const double height = SmoothMax(top_value, bottom_value, form_.rounding, &top_weight);
+    SmoothMax(height, side_value, form_.rounding, &height_weight);
     Vector3d crown(-2 * form_.curve_x * x.x(), -2 * form_.curve_y * x.y(), 0);
     const Vector3d top = Vector3d::UnitZ() - crown - waves_.Gradient(x);
     const Vector3d bottom = form_.bottom_curve * crown - Vector3d::UnitZ();
     const double u = x.x() / form_.half_length, v = x.y() / form_.half_width;
     const double norm = std::max(std::pow(u * u * u * u + v * v * v * v, 0.25), 1e-9), cube = norm * norm * norm;
     const Vector3d side(u * u * u / cube / form_.half_length, v * v * v / cube / form_.half_width, 0);
-    return (weight[0] * top + weight[1] * bottom) / lipschitz_ +
-           weight[2] * std::min(form_.half_length, form_.half_width) * side;
+    return height_weight / lipschitz_ * (top_weight * top + (1 - top_weight) * bottom) +
+           (1 - height_weight) * std::min(form_.half_length, form_.half_width) * side;
   }
 
  private:
@@ -187,7 +148,7 @@ std::unique_ptr<ImplicitShape> MakeHood(uint64_t seed) {
   // The swells' curvature stays below the crown's, so that the top is convex.
   const Waves swells(random, 3, 2.0, 3.2, 0.03, true);
   return std::make_unique<Slab>(Slab::Form{random.Uniform(0.95, 1.05), random.Uniform(0.72, 0.8),
-                                           random.Uniform(0.16, 0.2), random.Uniform(0.22, 0.28), 0.42, 0.0, 0.05},
+                                           random.Uniform(0.16, 0.2), random.Uniform(0.22, 0.28), 0.36, 0.0, 0.2},
                                 swells);
 }
 
@@ -196,7 +157,7 @@ std::unique_ptr<ImplicitShape> MakePane(uint64_t seed) {
   Random random({seed, 15});
   const Waves swells(random, 2, 1.5, 2.2, 0.01, true);
   return std::make_unique<Slab>(Slab::Form{kPaneHalfLength, kPaneHalfWidth, random.Uniform(0.2, 0.26),
-                                           random.Uniform(0.1, 0.16), 0.09, 0.9, 0.012},
+                                           random.Uniform(0.1, 0.16), 0.07, 0.9, 0.06},
                                 swells);
 }
 
@@ -217,27 +178,27 @@ class Touching : public ImplicitShape {
     }
     radius_ = 1.15;
   }
-  double Value(const Vector3d& x) const override { return -SmoothMax(Insides(x), kBlend) / lipschitz_; }
+  double Value(const Vector3d& x) const override {
+    return -SmoothMax(-BallValue(0, x), -BallValue(1, x), kBlend) / lipschitz_;
+  }
   Vector3d Gradient(const Vector3d& x) const override {
-    std::array<double, 2> weight;
-    SmoothMax(Insides(x), kBlend, &weight);
-    Vector3d sum = Vector3d::Zero();
-    for (int i = 0; i < 2; ++i) sum += weight[i] * ((x - balls_[i].center).normalized() - balls_[i].waves.Gradient(x));
-    return sum / lipschitz_;
+    double weight;
+    SmoothMax(-BallValue(0, x), -BallValue(1, x), kBlend, &weight);
+    return (weight * BallGradient(0, x) + (1 - weight) * BallGradient(1, x)) / lipschitz_;
   }
 
  private:
-  static constexpr double kBlend = 0.025;
+  static constexpr double kBlend = 0.12;
   struct Ball {
     Vector3d center;
     double radius;
     Waves waves;
   };
-  std::array<double, 2> Insides(const Vector3d& x) const {
-    std::array<double, 2> values;
-    for (int i = 0; i < 2; ++i)
-      values[i] = -((x - balls_[i].center).norm() - balls_[i].radius - balls_[i].waves.Value(x));
-    return values;
+  double BallValue(int i, const Vector3d& x) const {
+    return (x - balls_[i].center).norm() - balls_[i].radius - balls_[i].waves.Value(x);
+  }
+  Vector3d BallGradient(int i, const Vector3d& x) const {
+    return (x - balls_[i].center).normalized() - balls_[i].waves.Gradient(x);
   }
   std::array<Ball, 2> balls_;
   double lipschitz_ = 1;
@@ -283,7 +244,7 @@ std::unique_ptr<ImplicitShape> MakeShape(std::string_view name, uint64_t seed) {
 
 std::unique_ptr<ImplicitShape> MakePaneInterior(double depth) {
   // Its top follows the pane's curvature less, at a gap, and its bottom is below the ground.
-  const Slab::Form form{0.93 * kPaneHalfLength, 0.93 * kPaneHalfWidth, 0.12, 0.1, depth, 0, 0.03};
+  const Slab::Form form{0.93 * kPaneHalfLength, 0.93 * kPaneHalfWidth, 0.12, 0.1, depth + 0.5, 0, 0.1};
   return PlaceShape(std::make_shared<Slab>(form, Waves()), {1, Eigen::Quaterniond::Identity(), Vector3d(0, 0, -0.26)});
 }
 

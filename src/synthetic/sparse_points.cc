@@ -18,27 +18,21 @@ using Eigen::Vector3d;
 using Origin = SyntheticPoint::Origin;
 
 constexpr double kMaxObliqueness = 0.34;  // cosine: features at 70° and more are not matched
-constexpr double kMaxViewChange = 0.77;   // cosine of 40°: beyond, descriptors do not match
+constexpr double kWashedOut = 0.25;       // of sensor white, by a highlight
+constexpr double kMaxViewChange = 0.68;   // cosine of 47°: beyond, descriptors do not match
 constexpr double kMatched = 0.85;         // of the views that could be
 constexpr size_t kMinTrack = 3;
 
-// Where the view sees the point; nullopt if something hides it.
-std::optional<Vector2d> SeenAt(const Stage& stage, const StageView& view, const SurfaceHit& point) {
-  const auto px = view.Project(point.position);
-  if (!px || !view.Contains(*px)) return std::nullopt;
-  const Vector3d center = view.Center();
-  const Vector3d direction = (point.position - center).normalized();
-  if (-direction.dot(point.normal) < kMaxObliqueness) return std::nullopt;
-  SurfaceHit hit = stage.Trace(center, direction);
-  if (point.kind != SurfaceKind::kObject && hit.kind == SurfaceKind::kObject && !stage.OpaqueAt(hit.position))
-    hit = stage.Trace(center, direction, true);
-  if (hit.kind != point.kind || (hit.position - point.position).norm() > 5e-3) return std::nullopt;
+// Where a feature detector would find the point in the view.
+std::optional<Vector2d> FeatureAt(const Stage& stage, const StageView& view, const SurfaceHit& point) {
+  const Vector3d to_viewer = (view.Center() - point.position).normalized();
+  if (to_viewer.dot(point.normal) < kMaxObliqueness) return std::nullopt;
   // Under a highlight the mark is washed out.
   if (point.kind == SurfaceKind::kObject)
     for (size_t l = 0; l < stage.lights.size(); ++l)
-      if (SpecularLobe(stage, l, view.cam_from_stage, point.position, point.normal, -direction).maxCoeff() > 0.25)
+      if (SpecularLobe(stage, l, view.cam_from_stage, point.position, point.normal, to_viewer).maxCoeff() > kWashedOut)
         return std::nullopt;
-  return px;
+  return stage.SeenAt(view, point);
 }
 
 std::array<uint8_t, 3> ColorOf(const Stage& stage, size_t view, const SurfaceHit& point) {
@@ -63,7 +57,7 @@ Origin OriginOf(SurfaceKind kind) {
 std::optional<SyntheticPoint> MakeTrack(const Stage& stage, const SurfaceHit& feature, double noise_px, Random random) {
   std::vector<std::pair<size_t, Vector2d>> seen;
   for (size_t v = 0; v < stage.views.size(); ++v)
-    if (const auto px = SeenAt(stage, stage.views[v], feature)) seen.emplace_back(v, *px);
+    if (const auto px = FeatureAt(stage, stage.views[v], feature)) seen.emplace_back(v, *px);
   if (seen.size() < kMinTrack) return std::nullopt;
   const size_t reference = seen[random.Index(static_cast<int>(seen.size()))].first;
   const Vector3d main = (stage.views[reference].Center() - feature.position).normalized();
@@ -100,8 +94,8 @@ std::optional<SurfaceHit> SampleTexture(const Stage& stage, Random& random) {
     if (!inside || inside->normal.z() < 0.5) return std::nullopt;
     hit = {SurfaceKind::kInterior, 0, inside->position, inside->normal};
     const Vector3d x = hit.position, dx(step, 0, 0), dy(0, step, 0);
-    change = (around.InteriorAlbedo(x + dx, 0) - around.InteriorAlbedo(x - dx, 0)).abs() +
-             (around.InteriorAlbedo(x + dy, 0) - around.InteriorAlbedo(x - dy, 0)).abs();
+    const auto albedo = [&](const Vector3d& at) { return around.InteriorAlbedo(at, hit.normal, 0); };
+    change = (albedo(x + dx) - albedo(x - dx)).abs() + (albedo(x + dy) - albedo(x - dy)).abs();
   } else {
     const double x = random.Uniform(-3, 3), y = random.Uniform(-3, 3);
     hit = {SurfaceKind::kGround, 0, {x, y, around.ground_z()}, Vector3d::UnitZ()};

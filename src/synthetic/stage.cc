@@ -9,6 +9,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kShadowOffset = 2e-3;  // along the normal, so that a surface does not shadow itself
+constexpr double kSamePoint = 5e-3;     // a ray that ends that near to a point has reached it
 constexpr double kFarAway = 60;         // the ground ends there
 
 }  // namespace
@@ -22,6 +23,11 @@ double StageLight::Distance(const Rigid3d& cam_from_stage, const Vector3d& x) co
 Vector3d StageView::Center() const { return cam_from_stage.Inverse().translation; }
 
 std::optional<Vector3d> StageView::RayThrough(const Eigen::Vector2d& px) const {
+  if (camera.model == CameraModel::kPinhole) {  // straight, for speed
+    const std::vector<double>& p = camera.params;
+    return cam_from_stage.rotation.conjugate() *
+           Vector3d((px.x() - p[2]) / p[0], (px.y() - p[3]) / p[1], 1).normalized();
+  }
   const auto bearing = BearingOfPixel(camera, px);
   if (!bearing) return std::nullopt;
   return Vector3d(cam_from_stage.rotation.conjugate() * *bearing);
@@ -54,9 +60,21 @@ SurfaceHit Stage::Trace(const Vector3d& origin, const Vector3d& direction, bool 
     if (const auto inside = TraceRay(*interior, origin, direction, 0, hit.t))
       hit = {SurfaceKind::kInterior, inside->t, inside->position, inside->normal};
   if (!past_object)
-    if (const auto object = TraceRay(*shape, origin, direction, 0, hit.t))
+    if (const auto object = tracer->Trace(origin, direction, 0, hit.t))
       hit = {SurfaceKind::kObject, object->t, object->position, object->normal};
   return hit;
+}
+
+std::optional<Eigen::Vector2d> Stage::SeenAt(const StageView& view, const SurfaceHit& point) const {
+  const auto px = view.Project(point.position);
+  if (!px || !view.Contains(*px)) return std::nullopt;
+  const Vector3d center = view.Center(), direction = (point.position - center).normalized();
+  if (direction.dot(point.normal) >= 0) return std::nullopt;
+  SurfaceHit hit = Trace(center, direction);
+  if (point.kind != SurfaceKind::kObject && hit.kind == SurfaceKind::kObject && !OpaqueAt(hit.position))
+    hit = Trace(center, direction, true);
+  if (hit.kind != point.kind || (hit.position - point.position).norm() > kSamePoint) return std::nullopt;
+  return px;
 }
 
 double Stage::Visibility(const SurfaceHit& from, const Vector3d& direction, double distance) const {
@@ -64,7 +82,7 @@ double Stage::Visibility(const SurfaceHit& from, const Vector3d& direction, doub
   const ImplicitShape* interior = surroundings.interior();
   if (interior && RayMeets(*interior, origin, direction, 0, distance)) return 0;
   if (from.kind == SurfaceKind::kObject && transparent()) return 1;
-  if (!RayMeets(*shape, origin, direction, 0, distance)) return 1;
+  if (!tracer->Meets(origin, direction, 0, distance)) return 1;
   return gloss.transmittance.mean();
 }
 

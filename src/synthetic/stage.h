@@ -10,6 +10,7 @@
 #include "geometry/rigid.h"
 #include "light/light.h"
 #include "synthetic/marks.h"
+#include "synthetic/shape_tracer.h"
 #include "synthetic/shapes.h"
 #include "synthetic/surroundings.h"
 #include "synthetic/synthetic_options.h"
@@ -56,6 +57,7 @@ struct SurfaceHit {
 struct Stage {
   uint64_t seed = 0;
   std::shared_ptr<const ImplicitShape> shape;
+  std::shared_ptr<const ShapeTracer> tracer;  // of the shape
   Gloss gloss;
   Marks marks;
   Surroundings surroundings;
@@ -66,6 +68,9 @@ struct Stage {
 
   // What a ray meets first; beyond the object itself where `past_object`.
   SurfaceHit Trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, bool past_object = false) const;
+
+  // Where the view sees the surface point; nullopt where something hides it, or it is outside the image.
+  std::optional<Eigen::Vector2d> SeenAt(const StageView& view, const SurfaceHit& point) const;
 
   // Share of light that passes from the surface point towards `direction` for `distance` units.
   double Visibility(const SurfaceHit& from, const Eigen::Vector3d& direction, double distance) const;

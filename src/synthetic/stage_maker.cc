@@ -12,7 +12,8 @@ using Eigen::Array3d;
 using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kFill = 0.86;  // of the frame's width or height, by the object
+constexpr double kMarksPerPoint = 0.6;  // a mark has two to three features, most of which become points
+constexpr double kFill = 0.86;          // of the frame's width or height, by the object
 
 std::vector<Vector3d> SampleSurfacePoints(const ImplicitShape& shape, int count, uint64_t seed) {
   Random random({seed, 31});
@@ -32,7 +33,7 @@ Gloss MakeGloss(const SyntheticOptions& options) {
       {0.32, 0.025, 0.03}, {0.03, 0.07, 0.30}, {0.02, 0.20, 0.10}, {0.38, 0.17, 0.02}, {0.14, 0.03, 0.22}};
   static const std::vector<Array3d> metals = {{0.90, 0.68, 0.34}, {0.82, 0.52, 0.40}, {0.58, 0.57, 0.56}};
   const double shade = random.Uniform(0.85, 1.15);
-  if (options.base == "white") gloss.albedo = Array3d(0.70, 0.69, 0.66);
+  if (options.base == "white") gloss.albedo = Array3d(0.62, 0.61, 0.585);
   if (options.base == "black") gloss.albedo = Array3d(0.018, 0.018, 0.020) * shade;
   if (options.base == "coloured") gloss.albedo = paints[random.Index(static_cast<int>(paints.size()))] * shade;
   if (options.base == "metallic") {
@@ -43,27 +44,47 @@ Gloss MakeGloss(const SyntheticOptions& options) {
   return gloss;
 }
 
-// Half of the surface, the upper one, is nearly blank; marks enough for the sparse points asked for.
-Marks MakeMarks(const SyntheticOptions& options, const ImplicitShape& shape, const Gloss& gloss) {
-  Random random({static_cast<uint64_t>(options.seed), 33});
+std::vector<Array3d> MarkPalette(const Gloss& gloss) {
+  const bool dark = gloss.albedo.mean() < 0.3 && gloss.reflectance.mean() < 0.3;
+  if (dark) return {{0.75, 0.73, 0.70}, {0.70, 0.52, 0.10}, {0.35, 0.60, 0.70}, {0.75, 0.73, 0.70}};
+  return {{0.03, 0.03, 0.03}, {0.05, 0.08, 0.30}, {0.35, 0.04, 0.03}, {0.03, 0.03, 0.03}};
+}
+
+// True if enough views look at the place to triangulate it.
+bool WellSeen(const Stage& stage, const ShapeHit& place) {
+  const SurfaceHit hit{SurfaceKind::kObject, 0, place.position, place.normal};
+  int seen = 0;
+  for (const StageView& view : stage.views) {
+    const Vector3d to_viewer = (view.Center() - place.position).normalized();
+    if (to_viewer.dot(place.normal) > 0.45 && stage.SeenAt(view, hit) && ++seen >= 4) return true;
+  }
+  return false;
+}
+
+// Of the surface that is well seen, the upper half is nearly blank, and so is clear glass. About enough marks for the
+// points asked for.
+Marks MakeMarks(const SyntheticOptions& options, const Stage& stage) {
+  Random random({stage.seed, 33});
   std::vector<double> heights;
-  for (const Vector3d& x : SampleSurfacePoints(shape, 2000, options.seed)) heights.push_back(x.z());
+  for (int tries = 0; tries < 3000 && heights.size() < 1000; ++tries) {
+    const auto hit = SampleSurface(*stage.shape, random);
+    if (hit && WellSeen(stage, *hit)) heights.push_back(hit->position.z());
+  }
+  GLINT_CHECK(!heights.empty());
   std::nth_element(heights.begin(), heights.begin() + heights.size() / 2, heights.end());
   const double median = heights[heights.size() / 2];
-  const bool dark = gloss.albedo.mean() < 0.3 && gloss.reflectance.mean() < 0.3;
-  const std::vector<Array3d> palette =
-      dark ? std::vector<Array3d>{{0.75, 0.73, 0.70}, {0.70, 0.52, 0.10}, {0.35, 0.60, 0.70}, {0.75, 0.73, 0.70}}
-           : std::vector<Array3d>{{0.03, 0.03, 0.03}, {0.05, 0.08, 0.30}, {0.35, 0.04, 0.03}, {0.03, 0.03, 0.03}};
-  const int count = static_cast<int>(std::ceil(options.object_points * 0.9));
+  const std::vector<Array3d> palette = MarkPalette(stage.gloss);
+  const int count = static_cast<int>(std::ceil(options.object_points * kMarksPerPoint));
   const int upper = static_cast<int>(std::lround(options.glossy_share * count));
   const int wanted[2] = {count - upper, upper};
   int made[2] = {0, 0};
   std::vector<Mark> marks;
-  for (int tries = 0; made[0] + made[1] < count && tries < 200 * count; ++tries) {
-    const auto hit = SampleSurface(shape, random);
+  for (int tries = 0; made[0] + made[1] < count && tries < 100 * count; ++tries) {
+    const auto hit = SampleSurface(*stage.shape, random);
     if (!hit) continue;
     const int half = hit->position.z() > median;
-    if (made[half] >= wanted[half]) continue;
+    if (made[half] >= wanted[half] || !WellSeen(stage, *hit)) continue;
+    if (!stage.OpaqueAt(hit->position) && random.Uniform() > 0.05) continue;
     const Mark mark = MakeMark(*hit, palette, random);
     const bool overlaps = std::any_of(marks.begin(), marks.end(), [&](const Mark& other) {
       return (other.position - mark.position).norm() < 1.1 * (other.radius + mark.radius);
@@ -77,7 +98,7 @@ Marks MakeMarks(const SyntheticOptions& options, const ImplicitShape& shape, con
 
 std::vector<StageLight> MakeLights(const SyntheticOptions& options) {
   Random random({static_cast<uint64_t>(options.seed), 34});
-  static constexpr double kShares[3][3] = {{0.60, 0, 0}, {0.40, 0.35, 0}, {0.30, 0.27, 0.24}};
+  static constexpr double kShares[3][3] = {{0.75, 0, 0}, {0.50, 0.45, 0}, {0.38, 0.34, 0.30}};
   const double first = random.Uniform(0, 2 * kPi);
   std::vector<StageLight> lights;
   for (int i = 0; i < options.lights; ++i) {
@@ -197,12 +218,13 @@ Stage MakeStage(const SyntheticOptions& options) {
   Stage stage;
   stage.seed = options.seed;
   stage.shape = MakeShape(options.scene, options.seed);
+  stage.tracer = std::make_shared<ShapeTracer>(stage.shape);
   stage.gloss = MakeGloss(options);
-  stage.marks = MakeMarks(options, *stage.shape, stage.gloss);
   stage.surroundings = MakeSurroundings(options, *stage.shape);
   stage.lights = MakeLights(options);
   stage.light_radius = 0.5 * options.light_angle_deg * kPi / 180;
   stage.views = MakeViews(options, *stage.shape);
+  stage.marks = MakeMarks(options, stage);
   // A flash stands as far from the object as the camera does.
   if (options.light_kind == "flash")
     for (StageLight& light : stage.lights) light.reference_distance = stage.views[0].Center().norm();

@@ -89,13 +89,17 @@ Array3d Surroundings::GroundAlbedo(double x, double y, double footprint) const {
   return color.max(0.01).min(0.9);
 }
 
-Array3d Surroundings::InteriorAlbedo(const Vector3d& x, double footprint) const {
-  return GroundAlbedo(2.2 * x.x() + 31 + 0.7 * x.z(), 2.2 * x.y() - 17 + 0.9 * x.z(), 2.2 * footprint) * 1.3;
+Array3d Surroundings::InteriorAlbedo(const Vector3d& x, const Vector3d& normal, double footprint) const {
+  // Laid on from the side that the surface faces most.
+  int axis;
+  normal.cwiseAbs().maxCoeff(&axis);
+  const double u = x[(axis + 1) % 3], v = x[(axis + 2) % 3];
+  return (1.3 * GroundAlbedo(2.2 * u + 31 + 7 * axis, 2.2 * v - 17, 2.2 * footprint)).min(0.9);
 }
 
 Array3d Surroundings::Room(const Vector3d& direction) const {
   const double up = direction.normalized().z();
-  const Array3d floor(0.10, 0.095, 0.09), wall(0.17, 0.165, 0.16), ceiling(0.27, 0.28, 0.30);
+  const Array3d floor(0.13, 0.125, 0.12), wall(0.21, 0.205, 0.20), ceiling(0.33, 0.34, 0.36);
   const double s = 1 / (1 + std::exp(-9 * (up + 0.1))), t = 1 / (1 + std::exp(-5 * (up - 0.55)));
   Array3d color = floor + s * (wall - floor) + t * (ceiling - wall);
   for (const Vector3d& window : window_)
@@ -105,7 +109,7 @@ Array3d Surroundings::Room(const Vector3d& direction) const {
 
 Array3d Surroundings::Ambient(const Vector3d& normal) const {
   const double up = 0.5 + 0.5 * normal.z();
-  return up * Array3d(0.21, 0.21, 0.215) + (1 - up) * Array3d(0.085, 0.08, 0.075);
+  return up * Array3d(0.26, 0.26, 0.265) + (1 - up) * Array3d(0.11, 0.105, 0.10);
 }
 
 }  // namespace glint

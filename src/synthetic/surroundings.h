@@ -21,7 +21,7 @@ class Surroundings {
 
   // Albedo of the ground; detail finer than `footprint` (units a pixel) is left out.
   Eigen::Array3d GroundAlbedo(double x, double y, double footprint) const;
-  Eigen::Array3d InteriorAlbedo(const Eigen::Vector3d& x, double footprint) const;
+  Eigen::Array3d InteriorAlbedo(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, double footprint) const;
 
   // Radiance of the room from a direction.
   Eigen::Array3d Room(const Eigen::Vector3d& direction) const;

@@ -17,7 +17,7 @@ constexpr double kConverged = 1e-9;
 std::optional<ShapeHit> HitThrough(const Stage& stage, const StageView& view, const Vector2d& px) {
   const auto ray = view.RayThrough(px);
   if (!ray) return std::nullopt;
-  return TraceRay(*stage.shape, view.Center(), *ray, 0, 1e6);
+  return stage.tracer->Trace(view.Center(), *ray, 0, 1e6);
 }
 
 // Components of (half vector - normal) along two fixed axes across the normal.

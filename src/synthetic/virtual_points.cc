@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kMaxErrorPx = 2.5;     // COLMAP filters at 4 px, an observation
+constexpr double kMaxErrorPx = 3;       // COLMAP filters at 4 px, an observation
 constexpr double kSameHighlight = 0.6;  // contacts of one highlight in neighbouring views lie that near
 
 // Lit highlights of every view.
