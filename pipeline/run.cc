@@ -35,7 +35,7 @@ class Flow {
     Prepare();
     ReadProject();
     Stage(RunStage::kSeed, [&] { MakeSeed(); });
-    const TriangleMesh seed = ReadMesh(out_.Seed());
+    const TriangleMesh seed = ReadMesh(out_.Start());
     summary_.diagonal_world = Diagonal(seed);
     const std::vector<uint8_t> point_used = ReadFlags(out_.Stages() / "points_on_object.txt", scene_.points.size());
     summary_.num_points_used = point_used.size() - std::count(point_used.begin(), point_used.end(), 0);
@@ -147,6 +147,7 @@ void Flow::MakeSeed() {
   terminal_.Info(seed.report);
   if (seed.mesh.empty()) GiveUp({}, "no seed: the sparse points enclose no object; give a mesh with --mesh");
   WriteMesh(out_.Seed(), seed.mesh);
+  WriteMesh(out_.Start(), seed.start);
   WriteFlags(out_.Stages() / "points_on_object.txt", seed.point_used);
 }
 

@@ -17,6 +17,7 @@ SeedStageResult FromGivenMesh(const Scene& scene, const std::filesystem::path& p
   result.report = fmt::format("{}: {} faces, {} of {} points lie near it", path.string(), given.mesh.faces.size(), used,
                               scene.points.size());
   result.mesh = std::move(given.mesh);
+  result.start = result.mesh;
   result.point_used = std::move(given.point_used);
   result.notes = std::move(given.notes);
   return result;
@@ -27,7 +28,8 @@ SeedStageResult FromPoints(const Scene& scene, const ImageSource& images, const 
   SeedSummary summary;
   SeedResult seed = BuildSeed(scene, options, &summary, progress, &images);
   SeedStageResult result;
-  result.mesh = std::move(seed.smooth);
+  result.mesh = std::move(seed.mesh);
+  result.start = std::move(seed.smooth);
   result.point_used = std::move(seed.point_used);
   result.report = summary.BriefReport();
   result.warnings = std::move(summary.warnings);

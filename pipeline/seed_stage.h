@@ -16,6 +16,7 @@ namespace glint {
 
 struct SeedStageResult {
   TriangleMesh mesh;                // closed, oriented outward, in the model's frame; empty: `warnings` say why
+  TriangleMesh start;               // what refinement starts on: `mesh` faired through the points, or as it was given
   std::vector<uint8_t> point_used;  // a scene point: lies on the object
   std::string report;               // one line for people
   std::vector<std::string> notes;

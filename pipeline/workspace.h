@@ -28,6 +28,7 @@ class Workspace {
   std::filesystem::path Log() const { return root_ / "log.txt"; }
   // What a later run with --from needs of the stages before.
   std::filesystem::path Stages() const { return root_ / "stages"; }
+  std::filesystem::path Start() const { return Stages() / "start.ply"; }
 
   const std::filesystem::path& root() const { return root_; }
 
