@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "colmap/distortion.h"
+#include "colmap/lens_models.h"
 #include "core/check.h"
 
 namespace glint {
@@ -70,88 +71,8 @@ const double* Extra(const Camera& camera, const ModelInfo& info) {
   return camera.params.data() + info.num_focal_lengths + 2;
 }
 
-using Plane = std::optional<Eigen::Vector2d>;
-using Ray = std::optional<Eigen::Vector3d>;  // not yet of unit length
-
-// Equidistant plane: direction around the axis times angle from the axis.
-Plane FisheyePlane(const Eigen::Vector3d& x) {
-  const double across = x.head<2>().norm();
-  if (across == 0) return x.z() > 0 ? Plane(Eigen::Vector2d::Zero()) : std::nullopt;
-  return Eigen::Vector2d(x.head<2>() * (std::atan2(across, x.z()) / across));
-}
-
-Ray FisheyeRay(const Eigen::Vector2d& plane) {
-  const double angle = plane.norm();
-  if (angle >= kPi) return std::nullopt;
-  const double sinc = angle < 1e-8 ? 1 : std::sin(angle) / angle;
-  return Eigen::Vector3d(plane.x() * sinc, plane.y() * sinc, std::cos(angle));
-}
-
-// Devernay, Faugeras 2001: r_d = atan(2 r tan(ω/2)) / ω.
-Plane FovPlane(double omega, const Eigen::Vector3d& x) {
-  if (!(x.z() > 0)) return std::nullopt;
-  const Eigen::Vector2d plane = x.head<2>() / x.z();
-  const double r = plane.norm(), widening = 2 * std::tan(omega / 2);
-  if (std::abs(omega) < 1e-9) return plane;
-  if (r * std::abs(widening) < 1e-9) return Eigen::Vector2d(plane * (widening / omega));
-  return Eigen::Vector2d(plane * (std::atan(r * widening) / (r * omega)));
-}
-
-Ray FovRay(double omega, const Eigen::Vector2d& plane) {
-  const double r = plane.norm(), widening = 2 * std::tan(omega / 2);
-  if (std::abs(omega) < 1e-9) return plane.homogeneous();
-  if (r * std::abs(omega) >= kPi / 2) return std::nullopt;
-  const double factor = r * std::abs(omega) < 1e-9 ? omega / widening : std::tan(r * omega) / (r * widening);
-  return Eigen::Vector2d(plane * factor).homogeneous();
-}
-
-// Fitzgibbon 2001: the ray of the plane point p is (p, 1 + k |p|²).
-Plane DivisionPlane(double k, const Eigen::Vector3d& x) {
-  const double across2 = x.head<2>().squaredNorm(), z = x.z();
-  const double discriminant = z * z - 4 * k * across2;
-  if (discriminant < 0) return std::nullopt;
-  const double root = std::sqrt(discriminant);
-  if (z > 0) return Eigen::Vector2d(x.head<2>() * (2 / (z + root)));
-  if (k >= 0 || across2 == 0) return std::nullopt;
-  return Eigen::Vector2d(x.head<2>() * ((root - z) / (-2 * k * across2)));  // as above, without cancellation
-}
-
-Ray DivisionRay(double k, const Eigen::Vector2d& plane) {
-  const double bend = k * plane.squaredNorm();
-  if (bend >= 1) return std::nullopt;  // beyond it the angle from the axis falls again
-  return Eigen::Vector3d(plane.x(), plane.y(), 1 + bend);
-}
-
-// Khomutenko, Garcia, Martinet 2016.
-Plane EucmPlane(double alpha, double beta, const Eigen::Vector3d& x) {
-  const double distance = std::sqrt(beta * x.head<2>().squaredNorm() + x.z() * x.z());
-  const double horizon = alpha <= 0.5 ? alpha / (1 - alpha) : (1 - alpha) / alpha;
-  if (!(x.z() > -horizon * distance)) return std::nullopt;
-  return Eigen::Vector2d(x.head<2>() / (alpha * distance + (1 - alpha) * x.z()));
-}
-
-Ray EucmRay(double alpha, double beta, const Eigen::Vector2d& plane) {
-  const double r2 = beta * plane.squaredNorm();
-  const double radicand = 1 - (2 * alpha - 1) * r2;
-  if (!(radicand > 0)) return std::nullopt;
-  const double z = (1 - alpha * alpha * r2) / (alpha * std::sqrt(radicand) + 1 - alpha);
-  return Eigen::Vector3d(plane.x(), plane.y(), z);
-}
-
-// Longitude 0 (the +z axis) at the middle column, latitude from the upper edge (-y) to the lower.
-std::optional<Eigen::Vector2d> EquirectangularPixel(double width, double height, const Eigen::Vector3d& x) {
-  if (x.squaredNorm() == 0) return std::nullopt;
-  const double longitude = std::atan2(x.x(), x.z());
-  const double latitude_down = std::atan2(x.y(), std::hypot(x.x(), x.z()));
-  return Eigen::Vector2d((longitude / (2 * kPi) + 0.5) * width, (latitude_down / kPi + 0.5) * height);
-}
-
-Ray EquirectangularRay(double width, double height, const Eigen::Vector2d& px) {
-  const double longitude = 2 * kPi * (px.x() / width - 0.5), latitude_down = kPi * (px.y() / height - 0.5);
-  if (std::abs(latitude_down) > kPi / 2) return std::nullopt;
-  const double across = std::cos(latitude_down);
-  return Eigen::Vector3d(across * std::sin(longitude), std::sin(latitude_down), across * std::cos(longitude));
-}
+using internal::Plane;
+using internal::Ray;
 
 Plane PlaneOfPoint(const Camera& camera, const ModelInfo& info, const Eigen::Vector3d& x) {
   const double* extra = Extra(camera, info);
@@ -162,15 +83,15 @@ Plane PlaneOfPoint(const Camera& camera, const ModelInfo& info, const Eigen::Vec
       if (extra == end) return Eigen::Vector2d(x.head<2>() / x.z());
       return internal::Distort(internal::MakeLens(camera.model, extra), x.head<2>() / x.z());
     case Family::kFisheye: {
-      const Plane plane = FisheyePlane(x);
+      const Plane plane = internal::FisheyePlane(x);
       return plane ? internal::Distort(internal::MakeLens(camera.model, extra), *plane) : std::nullopt;
     }
     case Family::kFov:
-      return FovPlane(extra[0], x);
+      return internal::FovPlane(extra[0], x);
     case Family::kDivision:
-      return DivisionPlane(extra[0], x);
+      return internal::DivisionPlane(extra[0], x);
     case Family::kEucm:
-      return EucmPlane(extra[0], extra[1], x);
+      return internal::EucmPlane(extra[0], extra[1], x);
     case Family::kEquirectangular:
       break;
   }
@@ -184,14 +105,14 @@ Ray RayOfPlane(const Camera& camera, const ModelInfo& info, const Eigen::Vector2
     case Family::kFisheye: {
       const Plane undistorted = internal::Undistort(internal::MakeLens(camera.model, extra), plane);
       if (!undistorted) return std::nullopt;
-      return info.family == Family::kFisheye ? FisheyeRay(*undistorted) : Ray(undistorted->homogeneous());
+      return info.family == Family::kFisheye ? internal::FisheyeRay(*undistorted) : Ray(undistorted->homogeneous());
     }
     case Family::kFov:
-      return FovRay(extra[0], plane);
+      return internal::FovRay(extra[0], plane);
     case Family::kDivision:
-      return DivisionRay(extra[0], plane);
+      return internal::DivisionRay(extra[0], plane);
     case Family::kEucm:
-      return EucmRay(extra[0], extra[1], plane);
+      return internal::EucmRay(extra[0], extra[1], plane);
     case Family::kEquirectangular:
       break;
   }
@@ -262,7 +183,7 @@ std::optional<std::string> CameraProblem(const Camera& camera) {
 std::optional<Eigen::Vector2d> ProjectToPixel(const Camera& camera, const Eigen::Vector3d& x_in_cam) {
   const ModelInfo& info = Info(camera);
   if (info.family == Family::kEquirectangular) {
-    return EquirectangularPixel(camera.params[0], camera.params[1], x_in_cam);
+    return internal::EquirectangularPixel(camera.params[0], camera.params[1], x_in_cam);
   }
   const Plane plane = PlaneOfPoint(camera, info, x_in_cam);
   if (!plane || !plane->allFinite()) return std::nullopt;
@@ -274,7 +195,7 @@ std::optional<Eigen::Vector3d> BearingOfPixel(const Camera& camera, const Eigen:
   if (!px.allFinite()) return std::nullopt;
   const Ray ray =
       info.family == Family::kEquirectangular
-          ? EquirectangularRay(camera.params[0], camera.params[1], px)
+          ? internal::EquirectangularRay(camera.params[0], camera.params[1], px)
           : RayOfPlane(camera, info, (px - PrincipalPoint(camera, info)).cwiseQuotient(FocalLengths(camera, info)));
   if (!ray || !ray->allFinite()) return std::nullopt;
   return ray->normalized();
