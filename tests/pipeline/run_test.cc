@@ -1,0 +1,194 @@
+// The main job end to end, through the program, on a small rendered scene.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/pipeline/program.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+// One project and one finished run of it that the tests look at; they leave both as they are.
+class Run : public ProgramTest {
+ protected:
+  static void SetUpTestSuite() {
+    shared_ = new fs::path(fs::path(::testing::TempDir()) / "glint_run_test");
+    fs::remove_all(*shared_);
+    const ProgramResult synth =
+        RunGlint({"synth", "ellipsoid", "-o", Project(), "--views", "20", "--size", "320x240", "-q"});
+    ASSERT_EQ(synth.exit_code, 0) << synth.err;
+    const ProgramResult run = RunGlint(Arguments((*shared_ / "out").string(), {"--threads", "2"}));
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  static void TearDownTestSuite() {
+    fs::remove_all(*shared_);
+    delete shared_;
+  }
+
+  static std::string Project() { return (*shared_ / "p").string(); }
+  static std::string Lights() { return (*shared_ / "p/truth/lights.json").string(); }
+  static fs::path Out() { return *shared_ / "out"; }
+
+  // A coarse level set: the flow is what is tested, not the last digit.
+  static std::vector<std::string> Arguments(const std::string& out, const std::vector<std::string>& more,
+                                            bool lights = true) {
+    std::vector<std::string> arguments = {"run", Project(), "-o", out, "--set", "refine.voxel_rel=0.01"};
+    if (lights) arguments.insert(arguments.end(), {"--lights", Lights()});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  static Json Compare(const fs::path& mesh) {
+    const ProgramResult result = RunGlint({"compare", mesh.string(), (*shared_ / "p/truth/mesh.ply").string(), "--json",
+                                           "--project", Project(), "--lights", Lights(), "-q"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out)["candidates"][0];
+  }
+  static double SweptNormalError(const fs::path& mesh) {
+    return Compare(mesh)["regions"]["swept region"]["normal_deg"]["mean"];
+  }
+
+  static fs::path* shared_;
+};
+fs::path* Run::shared_ = nullptr;
+
+// What may differ between two runs of the same thing.
+void RemoveTimes(Json& json) {
+  if (json.is_object())
+    for (const char* key : {"seconds", "total_seconds", "command"}) json.erase(key);
+  for (Json& child : json)
+    if (child.is_structured()) RemoveTimes(child);
+}
+
+Json Report(const fs::path& out) {
+  Json report = Json::parse(ReadText(out / "report.json"));
+  RemoveTimes(report);
+  return report;
+}
+
+TEST_F(Run, WritesEveryResult) {
+  for (const char* name : {"mesh.ply", "sdf.vdb", "seed.ply", "lights.json", "config.yaml", "report.json", "log.txt",
+                           "highlights/view_000.jpg.png", "highlights/view_019.jpg.png"})
+    EXPECT_TRUE(fs::exists(Out() / name)) << name;
+  EXPECT_THAT(ReadText(Out() / "mesh.ply").substr(0, 1000),
+              AllOf(HasSubstr("property float nx"), HasSubstr("property float confidence")));
+  const Json report = Report(Out());
+  EXPECT_EQ(report["outcome"], "done");
+  EXPECT_EQ(report["project"]["views"], 20);
+  EXPECT_GT(report["highlights"]["gate"]["accepted"], 5);
+  EXPECT_FALSE(report["refine"]["iterations"].empty());
+  EXPECT_THAT(RunGlint({"inspect", (Out() / "mesh.ply").string()}).out, HasSubstr("closed       yes"));
+  EXPECT_EQ(RunGlint({"inspect", (Out() / "sdf.vdb").string()}).exit_code, 0);
+}
+
+TEST_F(Run, ResolvedConfigurationRepeatsTheRun) {
+  EXPECT_THAT(ReadText(Out() / "config.yaml"), HasSubstr("voxel_rel: 0.01\n"));
+  const ProgramResult result = RunGlint({"config", "--config", (Out() / "config.yaml").string()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("voxel_rel: 0.01\n"));
+}
+
+TEST_F(Run, ImprovesTheSurfaceWhereHighlightsPass) {
+  const double before = SweptNormalError(Out() / "seed.ply"), after = SweptNormalError(Out() / "mesh.ply");
+  EXPECT_LT(after, before / 2) << "before " << before << " deg, after " << after << " deg";
+}
+
+TEST_F(Run, TheGainComesFromTheHighlights) {
+  const ProgramResult result = RunGlint(Arguments(Path("off"), {"--set", "refine.use_highlights=false"}, false));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_GT(SweptNormalError(Path("off") + "/mesh.ply"), 1.3 * SweptNormalError(Out() / "mesh.ply"));
+}
+
+TEST_F(Run, ByteIdenticalAtAnyNumberOfThreads) {
+  ASSERT_EQ(RunGlint(Arguments(Path("one"), {"--threads", "1", "-q"})).exit_code, 0);
+  for (const char* name : {"seed.ply", "mesh.ply", "sdf.vdb", "lights.json", "config.yaml", "stages/candidates.json",
+                           "stages/highlights.json", "highlights/view_007.jpg.png"})
+    EXPECT_TRUE(ReadText(folder_ / "one" / name) == ReadText(Out() / name)) << name;
+  EXPECT_EQ(Report(folder_ / "one"), Report(Out()));
+}
+
+TEST_F(Run, GoesOnFromAnyStageToTheSameMesh) {
+  const std::string mesh = ReadText(Out() / "mesh.ply");
+  for (const char* stage : {"refine", "gate"}) {
+    fs::remove_all(folder_ / "again");
+    fs::copy(Out(), folder_ / "again", fs::copy_options::recursive);
+    fs::remove(folder_ / "again/mesh.ply");
+    const ProgramResult result = RunGlint(Arguments(Path("again"), {"--from", stage}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(ReadText(folder_ / "again/mesh.ply") == mesh) << stage;
+    EXPECT_TRUE(Report(folder_ / "again")["stages"][1]["reused"]);
+  }
+}
+
+TEST_F(Run, StagesOfAnotherProjectAreNotTaken) {
+  fs::copy(Out(), folder_ / "again", fs::copy_options::recursive);
+  Write("again/stages/points_on_object.txt", "0101\n");
+  const ProgramResult result = RunGlint(Arguments(Path("again"), {"--from", "refine"}));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("points_on_object.txt"), HasSubstr("another project")));
+}
+
+TEST_F(Run, WithoutLightsItSaysSoAndKeepsWhatItFound) {
+  const ProgramResult result = RunGlint(Arguments(Path("dark"), {}, false));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--lights"), HasSubstr(Path("dark"))));
+  for (const char* name : {"seed.ply", "report.json", "highlights/view_000.jpg.png"})
+    EXPECT_TRUE(fs::exists(folder_ / "dark" / name)) << name;
+  EXPECT_FALSE(fs::exists(folder_ / "dark/mesh.ply"));
+  EXPECT_THAT(Report(folder_ / "dark")["outcome"].get<std::string>(), HasSubstr("lights"));
+}
+
+TEST_F(Run, LightsThatExplainNothingGiveNoResult) {
+  // From below, where the object has no surface that mirrors it to the cameras.
+  Write("lights.json", R"({"lights": [{"type": "distant", "frame": "camera", "direction_to_light": [0, 0, 1]}]})");
+  const ProgramResult result = RunGlint(Arguments(Path("wrong"), {"--lights", Path("lights.json")}, false));
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_FALSE(fs::exists(folder_ / "wrong/mesh.ply"));
+}
+
+TEST_F(Run, AMissingImageIsCountedAndLeftOut) {
+  fs::copy(Project(), folder_ / "p", fs::copy_options::recursive);
+  fs::remove(folder_ / "p/images/view_004.jpg");
+  const ProgramResult result =
+      RunGlint({"run", Path("p"), "-o", Path("out"), "--lights", Lights(), "--set", "refine.voxel_rel=0.02"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("warning"));
+  EXPECT_EQ(Report(folder_ / "out")["project"]["missing_images"], 1);
+  EXPECT_FALSE(fs::exists(folder_ / "out/highlights/view_004.jpg.png"));
+}
+
+TEST_F(Run, AMeshInPlaceOfTheSeed) {
+  const ProgramResult result = RunGlint(Arguments(Path("given"), {"--mesh", (Out() / "seed.ply").string(), "-q"}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_LT(SweptNormalError(Path("given") + "/mesh.ply"), SweptNormalError(Out() / "seed.ply"));
+}
+
+TEST_F(Run, CtrlCStopsAndLeavesNothingHalfWritten) {
+  const ProgramResult result =
+      RunGlint(Arguments(Path("stopped"), {"--set", "refine.voxel_rel=0.002", "--set", "refine.max_iterations=100"}),
+               "timeout --preserve-status -s INT 2");
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("stopped"));
+  ExpectNoResults(folder_ / "stopped");
+}
+
+TEST_F(Run, TwoRunsDoNotShareAFolder) {
+  const std::string first =
+      "'" GLINT_PROGRAM "' run '" + Project() + "' -o '" + Path("busy") + "' --lights '" + Lights() +
+      "' -q --set refine.voxel_rel=0.002 --set refine.max_iterations=100 2> /dev/null & echo $! > '" + Path("pid") +
+      "'; sleep 1;";
+  const ProgramResult second = RunGlint(Arguments(Path("busy"), {}), first);
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.err, HasSubstr("another run"));
+  const std::string pid = std::to_string(std::stoi(ReadText(Path("pid"))));
+  EXPECT_EQ(std::system(("kill " + pid + "; while kill -0 " + pid + " 2> /dev/null; do sleep 0.05; done").c_str()), 0);
+}
+
+}  // namespace
+}  // namespace glint
