@@ -87,6 +87,29 @@ void Transform(const Eigen::Affine3d& similarity, TriangleMesh& mesh) {
   for (Eigen::Vector3d& n : mesh.normals) n = (similarity.linear() * n).normalized();
 }
 
+void Transform(const Eigen::Affine3d& similarity, Scene& scene) {
+  const Eigen::Quaterniond rotation(similarity.rotation());
+  for (View& view : scene.views) {
+    const Eigen::Vector3d center = similarity * view.Center();
+    view.cam_from_world.rotation = (view.cam_from_world.rotation * rotation.conjugate()).normalized();
+    view.cam_from_world.translation = -(view.cam_from_world.rotation * center);
+  }
+  for (ScenePoint& point : scene.points) point.position = similarity * point.position;
+}
+
+void Transform(const Eigen::Affine3d& similarity, std::vector<Light>& lights) {
+  const double scale = std::cbrt(similarity.linear().determinant());
+  for (Light& light : lights) {
+    const bool world = light.frame == LightFrame::kWorld;
+    if (light.type == LightType::kDistant) {
+      if (world) light.vector = (similarity.linear() * light.vector).normalized();
+    } else {
+      light.vector = world ? Eigen::Vector3d(similarity * light.vector) : Eigen::Vector3d(scale * light.vector);
+      light.sigma *= scale;
+    }
+  }
+}
+
 void EnsureNormals(TriangleMesh& mesh) {
   if (!mesh.normals.empty()) return;
   const PseudoNormals pseudo = ComputePseudoNormals(mesh, BuildEdgeTopology(mesh));

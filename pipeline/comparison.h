@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "colmap/scene.h"
 #include "geometry/triangle_mesh.h"
+#include "light/light.h"
 #include "metrics/compare.h"
 
 namespace glint {
@@ -28,8 +30,10 @@ struct Candidate {
 // Throws InputError naming file and key.
 Eigen::Affine3d ReadSimilarity(const std::filesystem::path& path);
 
-// Positions and normals through a similarity.
+// The same things in another world. A camera's own frame grows with the world, so that its pixels stay.
 void Transform(const Eigen::Affine3d& similarity, TriangleMesh& mesh);
+void Transform(const Eigen::Affine3d& similarity, Scene& scene);
+void Transform(const Eigen::Affine3d& similarity, std::vector<Light>& lights);
 
 // Unit vertex normals weighted by the incident angles, where the mesh has none of its own.
 void EnsureNormals(TriangleMesh& mesh);

@@ -109,7 +109,10 @@ class Flow {
 };
 
 void Flow::Prepare() {
-  out_.RemoveResults();
+  std::error_code missing;
+  if (std::filesystem::equivalent(arguments_.project, out_.root(), missing))
+    throw InputError(out_.root().string(), "", "is the project itself; expected another folder for the results");
+  out_.RemoveResults({arguments_.lights, arguments_.mesh, arguments_.config});
   terminal_.LogTo(out_.Log());
   summary_.command = arguments_.command;
   if (!arguments_.lights.empty()) lights_ = ReadLights(arguments_.lights);
@@ -145,7 +148,7 @@ void Flow::MakeSeed() {
   summary_.seed_report = seed.report;
   terminal_.Finish();
   terminal_.Info(seed.report);
-  if (seed.mesh.empty()) GiveUp({}, "no seed: the sparse points enclose no object; give a mesh with --mesh");
+  if (seed.start.empty()) GiveUp({}, "no seed: the sparse points enclose no object; give a mesh with --mesh");
   WriteMesh(out_.Seed(), seed.mesh);
   WriteMesh(out_.Start(), seed.start);
   WriteFlags(out_.Stages() / "points_on_object.txt", seed.point_used);
@@ -189,7 +192,7 @@ void Flow::GiveUp(const std::vector<Highlight>& highlights, const std::string& w
 void Flow::WriteHighlightPictures(const std::vector<Highlight>& highlights) {
   for (const Highlight& h : highlights) ++summary_.highlights_by_status[static_cast<size_t>(h.status)];
   summary_.num_candidates = highlights.size();
-  if (config_.output.overlays && config_.refine.use_highlights)
+  if (config_.output.overlays && !highlights.empty())
     WriteOverlays(scene_, *images_, highlights, config_.output.overlay_max_side_px, out_.Overlays(), terminal_);
   terminal_.Finish();
 }

@@ -23,6 +23,7 @@ struct RunArguments {
   std::filesystem::path images;     // empty: found in the project
   std::filesystem::path masks;      // empty: found in the project, or none
   std::filesystem::path lights;     // empty: unknown
+  std::filesystem::path config;     // where the configuration came from, if from a file
   std::filesystem::path mesh;       // empty: the seed is made from the sparse points
   RunStage from = RunStage::kSeed;  // stages before it are read from an earlier run in `out`
   std::string command;              // as typed, for the report

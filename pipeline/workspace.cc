@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -57,10 +58,14 @@ Workspace::Workspace(fs::path root) : root_(std::move(root)) {
 
 Workspace::~Workspace() { ::close(folder_); }
 
-void Workspace::RemoveResults() const {
+void Workspace::RemoveResults(const std::vector<fs::path>& inputs) const {
   for (const fs::path& file : {Mesh(), LevelSetFile(), Lights(), Config(), Report()}) {
     std::error_code error;
-    fs::remove(file, error);
+    const bool is_input = std::any_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
+      std::error_code missing;
+      return fs::equivalent(input, file, missing);
+    });
+    if (!is_input) fs::remove(file, error);
     if (error) throw InputError(file.string(), "", "cannot be replaced: " + error.message());
   }
 }

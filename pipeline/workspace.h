@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace glint {
 
@@ -33,8 +34,8 @@ class Workspace {
   const std::filesystem::path& root() const { return root_; }
 
   // Removes the results of an earlier run that this run will write anew, so that a run that fails leaves no
-  // results that are not its own.
-  void RemoveResults() const;
+  // results that are not its own; but not those that are inputs of this run.
+  void RemoveResults(const std::vector<std::filesystem::path>& inputs) const;
 
  private:
   std::filesystem::path root_;

@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,18 +13,23 @@
 #include "colmap/scene.h"
 #include "core/error.h"
 #include "io/mesh_io.h"
+#include "io/project_images.h"
 #include "light/light_io.h"
 #include "metrics/swept_region.h"
 #include "pipeline/commands/command.h"
 #include "pipeline/commands/option_flags.h"
 #include "pipeline/comparison.h"
+#include "pipeline/picture.h"
 #include "pipeline/terminal.h"
+#include "pipeline/workspace.h"
 
 namespace glint {
 namespace {
 
+constexpr double kLargestErrorShownDeg = 20;
+
 struct Arguments {
-  std::string mesh, reference, before, project, lights, transform, region;
+  std::string mesh, reference, before, project, lights, transform, region, picture, overlays;
   bool json = false;
   CompareOptions options;
   OptionTable table{options};
@@ -50,13 +57,30 @@ Region AttributeRegion(const Arguments& arguments, const TriangleMesh& reference
       known.empty() ? "the reference has no attributes" : "expected an attribute of the reference:" + known);
 }
 
-std::vector<Region> MakeRegions(const Arguments& arguments, const TriangleMesh& reference) {
+// The views and lights that the swept region and the picture are about, in the reference's frame.
+struct Project {
+  Scene scene;
+  std::vector<Light> lights;
+  ProjectPaths paths;
+};
+
+std::optional<Project> ReadProject(const Arguments& arguments, const Eigen::Affine3d& reference_from_mesh) {
+  if (arguments.project.empty()) return std::nullopt;
+  Project project;
+  project.paths = FindProject(arguments.project);
+  project.scene = MakeScene(ReadModel(project.paths.model));
+  project.lights = ReadLights(arguments.lights);
+  Transform(reference_from_mesh, project.scene);
+  Transform(reference_from_mesh, project.lights);
+  return project;
+}
+
+std::vector<Region> MakeRegions(const Arguments& arguments, const TriangleMesh& reference,
+                                const std::optional<Project>& project) {
   std::vector<Region> regions;
-  if (!arguments.project.empty()) {
-    const Scene scene = MakeScene(ReadModel(FindProject(arguments.project).model));
+  if (project)
     AddWithComplement("swept region", "outside the swept region",
-                      SweptRegion(reference, scene, ReadLights(arguments.lights)), regions);
-  }
+                      SweptRegion(reference, project->scene, project->lights), regions);
   if (!arguments.region.empty()) {
     Region region = AttributeRegion(arguments, reference);
     const std::string name = region.name;
@@ -65,19 +89,36 @@ std::vector<Region> MakeRegions(const Arguments& arguments, const TriangleMesh& 
   return regions;
 }
 
+void WritePicture(const Arguments& arguments, const Project& project, const std::vector<Candidate>& candidates,
+                  const TriangleMesh& reference, const std::vector<Region>& regions) {
+  const View& view = project.scene.views[MostTellingView(project.scene, reference, regions.front().mask)];
+  const std::filesystem::path photograph = arguments.overlays.empty()
+                                               ? PathForImage(project.paths.images, view.name, "")
+                                               : PathForImage(arguments.overlays, view.name, ".png");
+  std::vector<PictureColumn> columns;
+  for (const Candidate& c : candidates)
+    columns.push_back({&c == &candidates.back() ? "after" : "before", &c.mesh, c.comparison.reference_normal_deg});
+  WriteImagePng(arguments.picture, ComparisonSheet(photograph, columns, reference, view, kLargestErrorShownDeg));
+}
+
 void Compare(Arguments& arguments, Terminal& terminal) {
   CheckOptions(arguments.options);
+  const Eigen::Affine3d reference_from_mesh =
+      arguments.transform.empty() ? Eigen::Affine3d::Identity() : ReadSimilarity(arguments.transform);
   TriangleMesh reference = ReadMesh(arguments.reference);
   EnsureNormals(reference);
-  const std::vector<Region> regions = MakeRegions(arguments, reference);
+  const std::optional<Project> project = ReadProject(arguments, reference_from_mesh);
+  const std::vector<Region> regions = MakeRegions(arguments, reference, project);
   std::vector<Candidate> candidates;
   for (const std::string& path : {arguments.before, arguments.mesh}) {
     if (path.empty()) continue;
     Candidate candidate{path, ReadMesh(path), {}};
-    if (!arguments.transform.empty()) Transform(ReadSimilarity(arguments.transform), candidate.mesh);
+    Transform(reference_from_mesh, candidate.mesh);
+    EnsureNormals(candidate.mesh);
     candidate.comparison = CompareMeshes(candidate.mesh, reference, arguments.options, {}, terminal);
     candidates.push_back(std::move(candidate));
   }
+  if (!arguments.picture.empty()) WritePicture(arguments, *project, candidates, reference, regions);
   terminal.Finish();
   fmt::print("{}", arguments.json ? ComparisonJson(candidates, regions) : ComparisonTable(candidates, regions));
 }
@@ -97,6 +138,11 @@ void AddCompareCommand(CLI::App& app, CommandLine& line) {
   auto* lights = command->add_option("--lights", arguments->lights, "The true lights, for --project");
   project->needs(lights);
   lights->needs(project);
+  auto* picture = command->add_option("--picture", arguments->picture,
+                                      "PNG to draw: photograph, meshes, errors of their normals; for --project");
+  picture->needs(project);
+  command->add_option("--overlays", arguments->overlays, "Folder highlights/ of a run, for the picture's photograph")
+      ->needs(picture);
   command->add_option("--region", arguments->region,
                       "Also measure where this attribute of the reference's vertices is positive");
   command->add_option("--transform", arguments->transform,

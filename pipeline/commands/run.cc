@@ -19,7 +19,7 @@ namespace {
 
 struct Arguments {
   RunArguments run;
-  std::string config, from{kRunStageNames[0]};
+  std::string from{kRunStageNames[0]};
   std::vector<std::string> settings;
 };
 
@@ -30,7 +30,7 @@ void AddRunCommand(CLI::App& app, CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("PROJECT", arguments->run.project, "Folder of a COLMAP project")->required();
   command->add_option("-o,--out", arguments->run.out, "Folder for the results")->required();
-  command->add_option("--config", arguments->config, "YAML file with options to change (see glint config)");
+  command->add_option("--config", arguments->run.config, "YAML file with options to change (see glint config)");
   command->add_option("--set", arguments->settings, "Change one option: section.option=value")->allow_extra_args(false);
   command->add_option("--lights", arguments->run.lights, "JSON file with the lights");
   command->add_option("--mesh", arguments->run.mesh,
@@ -44,7 +44,7 @@ void AddRunCommand(CLI::App& app, CommandLine& line) {
   AddCommonOptions(*command, line);
   command->callback([arguments, &line] {
     line.action = [arguments, &line](Terminal& terminal) {
-      const Config config = ResolveConfig(arguments->config, arguments->settings);
+      const Config config = ResolveConfig(arguments->run.config, arguments->settings);
       const auto from = std::find(kRunStageNames.begin(), kRunStageNames.end(), arguments->from);
       arguments->run.from = static_cast<RunStage>(from - kRunStageNames.begin());
       arguments->run.command = line.text;

@@ -182,6 +182,20 @@ TEST_F(BadInput, OutputThatCannotBeWritten) {
   EXPECT_THAT(result.err, AllOf(HasSubstr(Path("out")), HasSubstr("folder")));
 }
 
+TEST_F(BadInput, OutputIntoTheProject) {
+  const ProgramResult result = RunGlint({"run", Path("p"), "-o", Path("p"), "--lights", Path("p/truth/lights.json")});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("the project itself"));
+}
+
+TEST_F(BadInput, InputsInTheOutputFolderSurvive) {
+  fs::create_directories(folder_ / "out");
+  fs::copy(folder_ / "p/truth/lights.json", folder_ / "out/lights.json");
+  Write("p/images/view_002.jpg", "this is no JPEG");
+  EXPECT_EQ(Run({"--lights", Path("out/lights.json")}).exit_code, 2);
+  EXPECT_TRUE(fs::exists(folder_ / "out/lights.json"));
+}
+
 TEST_F(BadInput, GoingOnWithoutAnEarlierRun) {
   ExpectRefused(HasSubstr("seed.ply"), {"--from", "refine"});
   ExpectRefused(HasSubstr("--from"), {"--from", "nowhere"});
