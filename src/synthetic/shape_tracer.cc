@@ -81,25 +81,22 @@ void ShapeTracer::MeasureClearance() {
   for (float& clear : clear_) clear = 0.9999f * std::sqrt(clear);
 }
 
-size_t ShapeTracer::CellAt(const Vector3d& x) const {
-  const Eigen::Array3i c = ((x - corner_).array() / cell_).cast<int>().max(0).min(kSize - 1);
-  return Index(c.x(), c.y(), c.z());
-}
-
 double ShapeTracer::March(const Vector3d& origin, const Vector3d& direction, double t_min, double t_max,
                           double near) const {
   const auto [enter, leave] = ClipToBounds(*shape_, origin, direction);
   const double end = std::min(t_max, leave);
   const Eigen::Vector3f toward = direction.cast<float>();
+  // The ray in cells: what is inside the bounding sphere is inside the grid.
+  const Vector3d start = (origin - corner_) / cell_, step = direction / cell_;
   double t = std::max(t_min, enter);
   for (int i = 0; i < kMaxSteps && t < end; ++i) {
-    const Vector3d x = origin + t * direction;
-    const size_t cell = CellAt(x);
+    const size_t cell = Index(static_cast<int>(start.x() + t * step.x()), static_cast<int>(start.y() + t * step.y()),
+                              static_cast<int>(start.z() + t * step.z()));
     if (clear_[cell] > 0) {
       t += clear_[cell];
       continue;
     }
-    const double value = shape_->Value(x);
+    const double value = shape_->Value(origin + t * direction);
     if (value < near) return t;
     // How fast the value can fall along the ray; known for the neighbouring cells only.
     const Slope& slope = slopes_[cell];

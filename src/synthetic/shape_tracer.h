@@ -23,7 +23,6 @@ class ShapeTracer {
     float deviation;           // bound of the gradient's difference from its mean, in and around the cell
     Eigen::Vector3f gradient;  // its mean
   };
-  size_t CellAt(const Eigen::Vector3d& x) const;
   Eigen::Vector3d CellCenter(int i, int j, int k) const;
   size_t Index(int i, int j, int k) const { return (static_cast<size_t>(k) * kSize + j) * kSize + i; }
   void Measure();

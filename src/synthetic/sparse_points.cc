@@ -90,7 +90,7 @@ std::optional<SurfaceHit> SampleTexture(const Stage& stage, Random& random) {
   const double step = 0.02;
   Array3d change;
   if (around.interior() && random.Uniform() < 0.6) {
-    const auto inside = SampleSurface(*around.interior(), random);
+    const auto inside = SampleSurface(around.interior()->shape(), random);
     if (!inside || inside->normal.z() < 0.5) return std::nullopt;
     hit = {SurfaceKind::kInterior, 0, inside->position, inside->normal};
     const Vector3d x = hit.position, dx(step, 0, 0), dy(0, step, 0);

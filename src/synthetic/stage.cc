@@ -10,7 +10,9 @@ using Eigen::Vector3d;
 
 constexpr double kShadowOffset = 2e-3;  // along the normal, so that a surface does not shadow itself
 constexpr double kSamePoint = 5e-3;     // a ray that ends that near to a point has reached it
-constexpr double kFarAway = 60;         // the ground ends there
+constexpr double kMetallic = 0.2;       // reflectance at normal incidence from which a surface is metal
+constexpr double kPaintReflectance = 0.04;
+constexpr double kFarAway = 60;  // the ground ends there
 
 }  // namespace
 
@@ -42,6 +44,11 @@ bool StageView::Contains(const Eigen::Vector2d& px) const {
          px.y() < static_cast<double>(camera.height);
 }
 
+Eigen::Array3d Stage::ReflectanceAt(const Vector3d& x) const {
+  if (gloss.reflectance.mean() < kMetallic || !marks.At(x)) return gloss.reflectance;
+  return Eigen::Array3d::Constant(kPaintReflectance);
+}
+
 bool Stage::OpaqueAt(const Vector3d& x) const {
   if (!transparent()) return true;
   const double u = x.x() / kPaneHalfLength, v = x.y() / kPaneHalfWidth;
@@ -56,8 +63,8 @@ SurfaceHit Stage::Trace(const Vector3d& origin, const Vector3d& direction, bool 
     const double t = (surroundings.ground_z() - origin.z()) / direction.z();
     if (t > 0 && t < hit.t) hit = {SurfaceKind::kGround, t, origin + t * direction, Vector3d::UnitZ()};
   }
-  if (const ImplicitShape* interior = surroundings.interior())
-    if (const auto inside = TraceRay(*interior, origin, direction, 0, hit.t))
+  if (const ShapeTracer* interior = surroundings.interior())
+    if (const auto inside = interior->Trace(origin, direction, 0, hit.t))
       hit = {SurfaceKind::kInterior, inside->t, inside->position, inside->normal};
   if (!past_object)
     if (const auto object = tracer->Trace(origin, direction, 0, hit.t))
@@ -79,8 +86,8 @@ std::optional<Eigen::Vector2d> Stage::SeenAt(const StageView& view, const Surfac
 
 double Stage::Visibility(const SurfaceHit& from, const Vector3d& direction, double distance) const {
   const Vector3d origin = from.position + kShadowOffset * from.normal;
-  const ImplicitShape* interior = surroundings.interior();
-  if (interior && RayMeets(*interior, origin, direction, 0, distance)) return 0;
+  const ShapeTracer* interior = surroundings.interior();
+  if (interior && interior->Meets(origin, direction, 0, distance)) return 0;
   if (from.kind == SurfaceKind::kObject && transparent()) return 1;
   if (!tracer->Meets(origin, direction, 0, distance)) return 1;
   return gloss.transmittance.mean();

@@ -75,6 +75,9 @@ struct Stage {
   // Share of light that passes from the surface point towards `direction` for `distance` units.
   double Visibility(const SurfaceHit& from, const Eigen::Vector3d& direction, double distance) const;
 
+  // Fresnel reflectance at normal incidence: marks on metal are paint, not metal.
+  Eigen::Array3d ReflectanceAt(const Eigen::Vector3d& x) const;
+
   // False where one looks through the object: on a pane, inside its opaque border and away from its marks.
   bool OpaqueAt(const Eigen::Vector3d& x) const;
   bool transparent() const { return gloss.transmittance.maxCoeff() > 0; }

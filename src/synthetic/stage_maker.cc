@@ -50,13 +50,14 @@ std::vector<Array3d> MarkPalette(const Gloss& gloss) {
   return {{0.03, 0.03, 0.03}, {0.05, 0.08, 0.30}, {0.35, 0.04, 0.03}, {0.03, 0.03, 0.03}};
 }
 
-// True if enough views look at the place to triangulate it.
+// True if enough views look at the place to triangulate it (as many as a scene of few views can give).
 bool WellSeen(const Stage& stage, const ShapeHit& place) {
+  const int enough = std::min<int>(4, 1 + static_cast<int>(stage.views.size()) / 8);
   const SurfaceHit hit{SurfaceKind::kObject, 0, place.position, place.normal};
   int seen = 0;
   for (const StageView& view : stage.views) {
     const Vector3d to_viewer = (view.Center() - place.position).normalized();
-    if (to_viewer.dot(place.normal) > 0.45 && stage.SeenAt(view, hit) && ++seen >= 4) return true;
+    if (to_viewer.dot(place.normal) > 0.45 && stage.SeenAt(view, hit) && ++seen >= enough) return true;
   }
   return false;
 }
@@ -208,8 +209,7 @@ Surroundings MakeSurroundings(const SyntheticOptions& options, const ImplicitSha
   if (options.scene != "pane") return Surroundings(lowest - 0.01, nullptr, options.seed);
   // The pane covers a box that stands on the ground.
   const double depth = 0.55;
-  std::shared_ptr<const ImplicitShape> interior = MakePaneInterior(depth);
-  return Surroundings(lowest - depth, interior, options.seed);
+  return Surroundings(lowest - depth, std::make_shared<ShapeTracer>(MakePaneInterior(depth)), options.seed);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ double Resolved(double wavelength, double footprint) {
 
 }  // namespace
 
-Surroundings::Surroundings(double ground_z, std::shared_ptr<const ImplicitShape> interior, uint64_t seed)
+Surroundings::Surroundings(double ground_z, std::shared_ptr<const ShapeTracer> interior, uint64_t seed)
     : ground_z_(ground_z), interior_(std::move(interior)), seed_(MixBits(seed ^ 0x67726f756e64)) {
   Random random({seed, 21});
   const double turn = random.Uniform(0, 3.14159265);
@@ -94,7 +94,7 @@ Array3d Surroundings::InteriorAlbedo(const Vector3d& x, const Vector3d& normal, 
   int axis;
   normal.cwiseAbs().maxCoeff(&axis);
   const double u = x[(axis + 1) % 3], v = x[(axis + 2) % 3];
-  return (1.3 * GroundAlbedo(2.2 * u + 31 + 7 * axis, 2.2 * v - 17, 2.2 * footprint)).min(0.9);
+  return (Array3d(1.6, 1.15, 0.75) * GroundAlbedo(2.2 * u + 31 + 7 * axis, 2.2 * v - 17, 2.2 * footprint)).min(0.9);
 }
 
 Array3d Surroundings::Room(const Vector3d& direction) const {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "synthetic/shapes.h"
+#include "synthetic/shape_tracer.h"
 
 namespace glint {
 
@@ -14,10 +14,10 @@ namespace glint {
 class Surroundings {
  public:
   Surroundings() = default;
-  Surroundings(double ground_z, std::shared_ptr<const ImplicitShape> interior, uint64_t seed);
+  Surroundings(double ground_z, std::shared_ptr<const ShapeTracer> interior, uint64_t seed);
 
   double ground_z() const { return ground_z_; }
-  const ImplicitShape* interior() const { return interior_.get(); }
+  const ShapeTracer* interior() const { return interior_.get(); }
 
   // Albedo of the ground; detail finer than `footprint` (units a pixel) is left out.
   Eigen::Array3d GroundAlbedo(double x, double y, double footprint) const;
@@ -33,7 +33,7 @@ class Surroundings {
   double Mottle(double x, double y, double footprint, int octaves, uint64_t layer) const;
 
   double ground_z_ = -1;
-  std::shared_ptr<const ImplicitShape> interior_;
+  std::shared_ptr<const ShapeTracer> interior_;
   uint64_t seed_ = 0;
   double turn_cos_ = 1, turn_sin_ = 0, tile_ = 0.5;
   std::array<Eigen::Array3d, 4> palette_;
