@@ -74,6 +74,27 @@ EdgeTopology BuildEdgeTopology(const TriangleMesh& mesh) {
   return out;
 }
 
+bool EdgesBalanced(const TriangleMesh& mesh) {
+  const auto mix = [](uint64_t x) {  // the finaliser of MurmurHash3
+    x = (x ^ x >> 33) * 0xff51afd7ed558ccdull;
+    x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53ull;
+    return x ^ x >> 33;
+  };
+  const uint64_t sum = ParallelSum(mesh.faces.size(), 16384, uint64_t{0}, [&](size_t begin, size_t end) {
+    uint64_t part = 0;
+    for (size_t f = begin; f < end; ++f)
+      for (int k = 0; k < 3; ++k) {
+        const uint32_t a = static_cast<uint32_t>(mesh.faces[f][k]),
+                       b = static_cast<uint32_t>(mesh.faces[f][(k + 1) % 3]);
+        if (a == b) continue;
+        const uint64_t hash = mix(uint64_t{std::min(a, b)} << 32 | std::max(a, b));
+        part += a < b ? hash : 0 - hash;
+      }
+    return part;
+  });
+  return sum == 0;
+}
+
 EdgeCounts CountEdges(const TriangleMesh& mesh, const EdgeTopology& topology) {
   EdgeCounts counts;
   counts.edges = topology.num_edges();

@@ -1,11 +1,10 @@
 // A narrow-band signed distance field, in world units, on an OpenVDB grid that this header keeps out of sight.
 #pragma once
 
-#include <cstddef>
-#include <memory>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <memory>
 
 namespace glint {
 
@@ -19,8 +18,8 @@ class LevelSet {
   explicit LevelSet(std::shared_ptr<LevelSetImpl> impl);
 
   bool empty() const;
-  double voxel_size() const;          // world units
-  double half_width_voxels() const;   // of the band
+  double voxel_size() const;         // world units
+  double half_width_voxels() const;  // of the band
   size_t num_active_voxels() const;
   size_t memory_bytes() const;
   Eigen::AlignedBox3d ActiveBox() const;  // world

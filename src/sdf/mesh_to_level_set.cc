@@ -8,48 +8,32 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "geometry/clean_mesh.h"
+#include "geometry/edge_topology.h"
+#include "geometry/pseudo_normals.h"
+#include "sdf/band.h"
+#include "sdf/exact_side.h"
 #include "sdf/level_set_impl.h"
 #include "sdf/memory_budget.h"
-#include "sdf/signed_distance.h"
+#include "sdf/prepared_mesh.h"
+#include "sdf/sign_evidence.h"
+#include "sdf/winding_signs.h"
 
 namespace glint {
 
 namespace {
 
-using openvdb::Coord;
-using Leaf = openvdb::FloatTree::LeafNodeType;
-constexpr int kLeafDim = 8;
-
-// Leaves that may hold voxels closer than `reach` voxels to the mesh (in index space), in order.
-std::vector<Coord> LeavesNear(const TriangleMesh& mesh, double reach) {
-  std::vector<Coord> leaves;
-  for (const Eigen::Vector3i& face : mesh.faces) {
-    Eigen::AlignedBox3d box;
-    for (int k = 0; k < 3; ++k) box.extend(mesh.vertices[face[k]]);
-    Eigen::Vector3i low, high;
-    for (int k = 0; k < 3; ++k) {
-      low[k] = static_cast<int>(std::floor((box.min()[k] - reach) / kLeafDim));
-      high[k] = static_cast<int>(std::floor((box.max()[k] + reach) / kLeafDim));
+// Pseudo-normals have told the sides of the active voxels; the others follow.
+class SpreadSigner : public internal::LeafSigner {
+ public:
+  internal::LeafBits Inside(const Eigen::Vector3i&, const internal::TileDistances& distances) const override {
+    internal::LeafBits known, inside{};
+    for (int x = 0; x < 8; ++x) {
+      known[x] = distances.active[x];
+      for (int i = 0; i < 64; ++i) inside[x] |= uint64_t{std::signbit(distances.distance[x << 6 | i])} << i;
     }
-    for (int x = low[0]; x <= high[0]; ++x)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int z = low[2]; z <= high[2]; ++z) {
-          const Eigen::Vector3d center = kLeafDim * Eigen::Vector3d(x, y, z) + Eigen::Vector3d::Constant(3.5);
-          const double limit = reach + 3.5 * std::sqrt(3.0);
-          const Eigen::Vector3d* v = mesh.vertices.data();
-          if (ClosestOnTriangle(v[face[0]], v[face[1]], v[face[2]], center).squared_distance <= limit * limit)
-            leaves.emplace_back(kLeafDim * x, kLeafDim * y, kLeafDim * z);
-        }
-    if (leaves.size() > (size_t{1} << 22)) {
-      std::sort(leaves.begin(), leaves.end());
-      leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
-    }
+    return internal::SpreadSides(known, inside);
   }
-  std::sort(leaves.begin(), leaves.end());
-  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
-  return leaves;
-}
+};
 
 }  // namespace
 
@@ -72,49 +56,137 @@ LevelSet MeshToLevelSet(const TriangleMesh& mesh, double voxel_size_world, const
   return MeshToLevelSet(mesh, Eigen::Affine3d(Eigen::Scaling(voxel_size_world)), options, summary);
 }
 
+namespace {
+
+openvdb::math::Transform::Ptr ToVdb(const Eigen::Affine3d& world_from_index, double voxel_size) {
+  if (world_from_index.translation().isZero(0) &&
+      (world_from_index.linear() - voxel_size * Eigen::Matrix3d::Identity()).isZero(1e-12 * voxel_size))
+    return openvdb::math::Transform::createLinearTransform(voxel_size);
+  openvdb::math::Mat4d matrix;  // for row vectors: transposed
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) matrix[c][r] = world_from_index.matrix()(r, c);
+  return openvdb::math::Transform::createLinearTransform(matrix);
+}
+
+constexpr double kSmallestVoxel = 1.5e-5;
+
+// The edge length of the voxels; throws InputError unless the transform is a similarity.
+double VoxelSize(const Eigen::Affine3d& world_from_index) {
+  const Eigen::Matrix3d m = world_from_index.linear();
+  const double size = std::cbrt(m.determinant());
+  if (!world_from_index.matrix().allFinite() || !(size > 0) || !(m.transpose() * m / (size * size)).isIdentity(1e-9))
+    throw InputError("", "grid transform", "expected a rotation, a positive uniform scale and a translation");
+  // OpenVDB takes transforms of a smaller determinant for singular.
+  if (size < kSmallestVoxel)
+    throw InputError("", "voxel size",
+                     fmt::format("expected at least {} (the smallest that OpenVDB can hold), found {}; "
+                                 "scale the mesh up",
+                                 kSmallestVoxel, size));
+  return size;
+}
+
+class BandMaker {
+ public:
+  BandMaker(const internal::PreparedMesh& prepared, double half_width, double voxel_size)
+      : prepared_(prepared),
+        band_{half_width, voxel_size},
+        background_(static_cast<float>(half_width * voxel_size)),
+        bins_(internal::BinTriangles(prepared.mesh, half_width)) {}
+
+  openvdb::FloatGrid::Ptr Unsigned() const { return MakeGrid(band_); }
+
+  openvdb::FloatGrid::Ptr ByPseudoNormals() const {
+    const PseudoNormals normals = ComputePseudoNormals(prepared_.mesh, BuildEdgeTopology(prepared_.mesh));
+    const internal::PseudoNormalSide exact(prepared_.mesh, normals);
+    const SpreadSigner signer;
+    internal::BandOptions band = band_;
+    band.exact = &exact;
+    band.signer = &signer;
+    const openvdb::FloatGrid::Ptr grid = MakeGrid(band);
+    FillTiles(*grid);
+    return grid;
+  }
+
+  openvdb::FloatGrid::Ptr ByWinding() const {
+    const internal::WindingSigner signer(prepared_.mesh, prepared_.balanced, band_.half_width_voxels);
+    internal::BandOptions band = band_;
+    band.signer = &signer;
+    const openvdb::FloatGrid::Ptr grid = MakeGrid(band);
+    if (prepared_.balanced) {
+      FillTiles(*grid);
+    } else {
+      signer.FillTiles(grid->tree());
+    }
+    return grid;
+  }
+
+ private:
+  openvdb::FloatGrid::Ptr MakeGrid(const internal::BandOptions& band) const {
+    std::vector<std::unique_ptr<internal::Leaf>> leaves = internal::ComputeLeaves(prepared_.mesh, bins_, band);
+    openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(background_);
+    for (auto& leaf : leaves)
+      if (leaf) grid->tree().addLeaf(leaf.release());
+    return grid;
+  }
+
+  // Tiles take the sides of the leaves beside them.
+  void FillTiles(openvdb::FloatGrid& grid) const {
+    openvdb::tools::signedFloodFillWithValues(grid.tree(), background_, -background_, true, 1, 1);
+  }
+
+  const internal::PreparedMesh& prepared_;
+  internal::BandOptions band_;
+  float background_;
+  internal::TileBins bins_;
+};
+
+// Makes the band by the method asked for; "auto" tries pseudo-normals and looks at what comes out.
+openvdb::FloatGrid::Ptr MakeBand(const BandMaker& maker, const internal::PreparedMesh& prepared,
+                                 const std::string& sign, float voxel_size, SdfSummary& summary) {
+  summary.sign = sign;
+  summary.reason = "as asked";
+  if (sign == "unsigned") return maker.Unsigned();
+  if (sign == "winding") return maker.ByWinding();
+  if (sign == "pseudonormal") return maker.ByPseudoNormals();
+  if (!prepared.balanced) {
+    summary.sign = "winding";
+    summary.reason = "the mesh is not closed and consistently oriented: " + internal::DescribeEdges(prepared.mesh);
+    return maker.ByWinding();
+  }
+  openvdb::FloatGrid::Ptr grid = maker.ByPseudoNormals();
+  const size_t conflicts = internal::CountSignConflicts(grid->tree(), voxel_size);
+  if (conflicts > 0) {
+    summary.sign = "winding";
+    summary.reason = fmt::format(
+        "the mesh is closed, but pseudo-normals put {} pairs of neighbouring voxels away from the surface on different "
+        "sides: faces pass through each other, or components are inside out or inside others",
+        conflicts);
+    return maker.ByWinding();
+  }
+  summary.sign = "pseudonormal";
+  summary.reason = "the mesh is closed and consistently oriented, and its signs agree with each other";
+  return grid;
+}
+
+}  // namespace
+
 LevelSet MeshToLevelSet(const TriangleMesh& mesh, const Eigen::Affine3d& world_from_index, const SdfOptions& options,
                         SdfSummary* summary) {
-  const double voxel_size = std::cbrt(std::abs(world_from_index.linear().determinant()));
+  const double voxel_size = VoxelSize(world_from_index);
   const std::vector<std::string> violations = Violations(options);
   if (!violations.empty()) throw InputError("", "signed distance options", violations.front());
-  TriangleMesh in_index = Clean(mesh).mesh;
-  const Eigen::Affine3d index_from_world = world_from_index.inverse();
-  for (Eigen::Vector3d& v : in_index.vertices) v = index_from_world * v;
-  const double half_width = options.half_width_voxels;
-  CheckGridFits(in_index, half_width, options.max_memory_gb);
-
-  const SignedDistanceQuery query(in_index, options.sign);
-  const std::vector<Coord> origins = LeavesNear(in_index, half_width);
-  const bool is_signed = query.method() != "unsigned";
-  const float background = static_cast<float>(half_width * voxel_size);
-  std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
-  ParallelFor(origins.size(), 4, [&](size_t i) {
-    auto leaf = std::make_unique<Leaf>(origins[i], background);
-    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
-      const Coord ijk = leaf->offsetToGlobalCoord(n);
-      const auto distance = query.Find({double(ijk[0]), double(ijk[1]), double(ijk[2])}, half_width);
-      if (distance && std::abs(*distance) < half_width) leaf->setValueOn(n, static_cast<float>(*distance * voxel_size));
-    }
-    if (!leaf->isEmpty()) leaves[i] = std::move(leaf);
-  });
-  auto grid = openvdb::FloatGrid::create(background);
-  for (auto& leaf : leaves)
-    if (leaf) grid->tree().addLeaf(leaf.release());
-  if (is_signed) openvdb::tools::signedFloodFill(grid->tree());
-  openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();  // row vectors: transposed
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) matrix[c][r] = world_from_index.matrix()(r, c);
-  if (world_from_index.linear().isApprox(voxel_size * Eigen::Matrix3d::Identity()) &&
-      world_from_index.translation().isZero(0)) {
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
-  } else {
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
-  }
-  grid->setGridClass(is_signed ? openvdb::GRID_LEVEL_SET : openvdb::GRID_UNKNOWN);
-  if (summary) {
-    *summary = query.summary();
-    summary->active_voxels = grid->activeVoxelCount();
-  }
+  const internal::PreparedMesh prepared = internal::PrepareMesh(mesh, world_from_index.inverse());
+  CheckGridFits(prepared.mesh, options.half_width_voxels, options.max_memory_gb);
+  const BandMaker maker(prepared, options.half_width_voxels, voxel_size);
+  SdfSummary story;
+  story.turned = prepared.turned;
+  story.degenerate_faces = prepared.collapsed_faces;
+  story.predicted_bytes = PredictBandBytes(prepared.mesh, options.half_width_voxels);
+  const openvdb::FloatGrid::Ptr grid = MakeBand(maker, prepared, options.sign, static_cast<float>(voxel_size), story);
+  story.active_voxels = grid->activeVoxelCount();
+  grid->setTransform(ToVdb(world_from_index, voxel_size));
+  grid->setGridClass(options.sign == "unsigned" ? openvdb::GRID_UNKNOWN : openvdb::GRID_LEVEL_SET);
+  if (summary) *summary = story;
   return MakeLevelSet(grid);
 }
 

@@ -23,13 +23,10 @@ struct SdfOptions {
 };
 
 struct SdfSummary {
-  std::string sign;     // the method used
-  std::string reason;   // why, in words for the user
-  bool turned = false;  // the mesh was inside out and has been turned
-  size_t boundary_edges = 0;
-  size_t non_manifold_edges = 0;
-  size_t misoriented_edges = 0;
-  size_t degenerate_faces = 0;
+  std::string sign;             // the method used
+  std::string reason;           // why, in words for the user
+  bool turned = false;          // the mesh was inside out and has been turned
+  size_t degenerate_faces = 0;  // left out: two of their corners are in one place
   size_t active_voxels = 0;
   double predicted_bytes = 0;  // of the grid and the work space
 };

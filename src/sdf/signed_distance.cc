@@ -1,21 +1,21 @@
 #include "sdf/signed_distance.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "core/check.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "geometry/clean_mesh.h"
+#include "geometry/components.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
+#include "geometry/self_intersections.h"
 #include "geometry/winding_number.h"
+#include "sdf/prepared_mesh.h"
 
 namespace glint {
 
 struct SignedDistanceQuery::Impl {
-  CleanMesh clean;
+  internal::PreparedMesh prepared;
   SdfSummary summary;
   PseudoNormals normals;
   std::unique_ptr<ClosestPointQuery> closest;
@@ -24,9 +24,36 @@ struct SignedDistanceQuery::Impl {
   bool Inside(const Eigen::Vector3d& p, const MeshPoint& at) const {
     if (winding) return (*winding)(p) > 0.5;
     if (summary.sign == "unsigned") return false;
-    return (p - at.point).dot(normals.Of(clean.mesh, at)) < 0;
+    return (p - at.point).dot(normals.Of(prepared.mesh, at)) < 0;
   }
 };
+
+namespace {
+
+// Decides what "auto" means for a mesh.
+void ChooseSign(const internal::PreparedMesh& prepared, SdfSummary& summary) {
+  summary.sign = "winding";
+  if (!prepared.balanced) {
+    summary.reason = "the mesh is not closed and consistently oriented: " + internal::DescribeEdges(prepared.mesh);
+    return;
+  }
+  const EdgeTopology topology = BuildEdgeTopology(prepared.mesh);
+  Components components = FindComponents(prepared.mesh, topology);
+  FindWindings(prepared.mesh, components);
+  for (const Component& c : components.list)
+    if (!c.bounds_solid()) {
+      summary.reason = "components of the mesh are inside out or inside others";
+      return;
+    }
+  if (!SelfIntersections(prepared.mesh, 1).empty()) {
+    summary.reason = "faces of the mesh pass through each other";
+    return;
+  }
+  summary.sign = "pseudonormal";
+  summary.reason = "the mesh is closed and consistently oriented, and no faces pass through each other";
+}
+
+}  // namespace
 
 SignedDistanceQuery::~SignedDistanceQuery() = default;
 SignedDistanceQuery::SignedDistanceQuery(SignedDistanceQuery&&) noexcept = default;
@@ -34,32 +61,17 @@ const SdfSummary& SignedDistanceQuery::summary() const { return impl_->summary; 
 
 SignedDistanceQuery::SignedDistanceQuery(const TriangleMesh& mesh, const std::string& sign)
     : impl_(std::make_unique<Impl>()) {
+  const std::vector<std::string> violations = Violations(SdfOptions{.sign = sign});
+  if (!violations.empty()) throw InputError("", "signed distance options", violations.front());
   Impl& self = *impl_;
-  self.clean = Clean(mesh);
-  TriangleMesh& m = self.clean.mesh;
-  if (m.faces.empty()) throw InputError("", "mesh", "expected at least one triangle with three different corners");
-  const EdgeTopology topology = BuildEdgeTopology(m);
-  const EdgeCounts counts = CountEdges(m, topology);
-  self.summary.boundary_edges = counts.boundary;
-  self.summary.non_manifold_edges = counts.non_manifold;
-  self.summary.misoriented_edges = counts.misoriented;
-  self.summary.degenerate_faces = self.clean.collapsed_faces;
+  self.prepared = internal::PrepareMesh(mesh, Eigen::Affine3d::Identity());
+  const TriangleMesh& m = self.prepared.mesh;
+  self.summary.turned = self.prepared.turned;
+  self.summary.degenerate_faces = self.prepared.collapsed_faces;
   self.summary.sign = sign;
   self.summary.reason = "as asked";
-  if (sign == "auto" && counts.closed_and_oriented()) {
-    self.summary.sign = "pseudonormal";
-    self.summary.reason = "the mesh is closed and consistently oriented";
-  } else if (sign == "auto") {
-    self.summary.sign = "winding";
-    self.summary.reason = fmt::format("{} boundary, {} non-manifold and {} misoriented edges", counts.boundary,
-                                      counts.non_manifold, counts.misoriented);
-  }
-  if (self.summary.sign != "unsigned" && SignedVolume(m) < 0 && counts.misoriented == 0) {
-    for (Eigen::Vector3i& face : m.faces) std::swap(face[1], face[2]);
-    self.summary.turned = true;
-  }
-  if (self.summary.sign == "pseudonormal")
-    self.normals = ComputePseudoNormals(m, self.summary.turned ? BuildEdgeTopology(m) : topology);
+  if (sign == "auto") ChooseSign(self.prepared, self.summary);
+  if (self.summary.sign == "pseudonormal") self.normals = ComputePseudoNormals(m, BuildEdgeTopology(m));
   self.closest = std::make_unique<ClosestPointQuery>(m);
   if (self.summary.sign == "winding") self.winding = std::make_unique<WindingNumber>(m, self.closest->bvh());
 }
@@ -74,12 +86,12 @@ std::optional<double> SignedDistanceQuery::Find(const Eigen::Vector3d& p, double
 SignedDistanceQuery::Result SignedDistanceQuery::FindClosest(const Eigen::Vector3d& p) const {
   const auto at = impl_->closest->Find(p);
   GLINT_CHECK(at.has_value());
-  const TriangleMesh& m = impl_->clean.mesh;
+  const TriangleMesh& m = impl_->prepared.mesh;
   const Eigen::Vector3i& face = m.faces[at->face];
   const double distance = std::sqrt(at->squared_distance);
   Result result{impl_->Inside(p, *at) ? -distance : distance, *at,
                 Barycentric(m.vertices[face[0]], m.vertices[face[1]], m.vertices[face[2]], at->point)};
-  result.closest.face = static_cast<int>(impl_->clean.source_face[at->face]);
+  result.closest.face = static_cast<int>(impl_->prepared.source_face[at->face]);
   return result;
 }
 

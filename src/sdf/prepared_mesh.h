@@ -1,0 +1,27 @@
+// A mesh brought into index space and made ready for signing.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+
+namespace glint::internal {
+
+struct PreparedMesh {
+  TriangleMesh mesh;                  // welded, without collapsed faces, oriented outward if that can be told
+  std::vector<uint32_t> source_face;  // of each face: the face it comes from
+  size_t collapsed_faces = 0;
+  bool balanced = false;  // closed and consistently oriented
+  bool turned = false;    // it was inside out
+};
+
+// Throws InputError for meshes that cannot be used (geometry/clean_mesh.h).
+PreparedMesh PrepareMesh(const TriangleMesh& mesh, const Eigen::Affine3d& index_from_world);
+
+// The edges that keep `mesh` from being balanced, in words.
+std::string DescribeEdges(const TriangleMesh& mesh);
+
+}  // namespace glint::internal
