@@ -6,12 +6,16 @@
 #include <cmath>
 
 #include "geometry/closest_point.h"
+#include "geometry/self_intersections.h"
 #include "seed/sparse_surface.h"
 
 namespace glint {
 namespace {
 
 constexpr double kRegionMargin = 0.05;  // of the diagonal
+constexpr int kRounds = 3;              // of surface, fairing, and leaving out the points that it disbelieves
+constexpr int kMaxStiffenings = 4;
+constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
 constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
 
 // Sum over the pieces; the mesh is closed and manifold.
@@ -20,15 +24,49 @@ long GenusOf(const TriangleMesh& mesh) {
   return 1 - euler / 2;
 }
 
-// What the smooth surface should pass: the object's points on the sparse surface, and its foot on the ground.
-std::vector<Attachment> Attachments(const SparseSurface& surface, const PointReliability& reliability) {
+// What the smooth surface should pass: the object's points on the sparse surface, and its foot on the ground. Many
+// views that agree are hardly wrong; two views agree on any mismatch along their epipolar line.
+std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& surface,
+                                    const PointReliability& reliability) {
   const double foot_sigma = kFootSigmaRel * Diagonal(surface.mesh);
   std::vector<Attachment> attachments;
   for (size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
-    const int point = surface.scene_point[v];
-    attachments.push_back({surface.mesh.vertices[v], point >= 0 ? reliability.sigma[point] : foot_sigma});
+    Attachment a{surface.mesh.vertices[v], foot_sigma};
+    if (const int point = surface.scene_point[v]; point >= 0) {
+      const double views = static_cast<double>(scene.points[point].observations.size());
+      a.sigma = reliability.sigma[point];
+      a.credit = std::clamp((views - 1) / 2, 0.5, 3.0);
+    }
+    attachments.push_back(a);
   }
   return attachments;
+}
+
+// Fairs ever more stiffly until the surface does not pass through itself.
+FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments, FairOptions options,
+                            SeedSummary& summary) {
+  FairResult result;
+  for (int attempt = 0; attempt < kMaxStiffenings; ++attempt) {
+    result = FairThroughPoints(mesh, attachments, options);
+    if (SelfIntersections(result.mesh, 1).empty()) return result;
+    options.smoothing *= 1.6;
+  }
+  summary.warnings.push_back("the smooth seed passes through itself");
+  return result;
+}
+
+// Takes the points that the smooth surface disbelieves out of the object; true if there were any.
+bool DropDoubted(const SparseSurface& surface, const FairResult& fair, PointReliability& reliability,
+                 ObjectChoice& choice) {
+  bool any = false;
+  for (size_t v = 0; v < surface.scene_point.size(); ++v) {
+    const int point = surface.scene_point[v];
+    if (point < 0 || fair.trust[v] > kMinTrust || choice.role[point] != PointRole::kObject) continue;
+    reliability.status[point] = PointStatus::kVirtual;
+    choice.role[point] = PointRole::kUnused;
+    any = true;
+  }
+  return any;
 }
 
 double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
@@ -74,9 +112,9 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   s = SeedSummary();
   SeedResult out;
   progress.Begin("seed", 4);
-  const PointReliability reliability = JudgePoints(scene, options.points);
+  PointReliability reliability = JudgePoints(scene, options.points);
   progress.Advance();
-  const ObjectChoice choice = ChooseObject(scene, reliability, options.object, options.surface, masks, progress);
+  ObjectChoice choice = ChooseObject(scene, reliability, options.object, options.surface, masks, progress);
   CountPoints(reliability, choice, s);
   out.point_used.assign(scene.points.size(), 0);
   progress.Advance();
@@ -85,7 +123,16 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     s.warnings.push_back(fmt::format("only {} sparse points on the object: no seed", s.num_object_points));
     return out;
   }
-  const SparseSurface surface = MakeSparseSurface(scene, reliability, choice, options.surface);
+  SparseSurface surface;
+  FairResult fair;
+  for (int round = 0; round < kRounds; ++round) {
+    surface = MakeSparseSurface(scene, reliability, choice, options.surface);
+    progress.ThrowIfCancelled();
+    if (surface.mesh.empty()) break;
+    fair = FairWithoutFolds(surface.mesh, Attachments(scene, surface, reliability), options.smooth, s);
+    if (round + 1 == kRounds || !DropDoubted(surface, fair, reliability, choice)) break;
+  }
+  CountPoints(reliability, choice, s);
   progress.Advance();
   progress.ThrowIfCancelled();
   if (surface.mesh.empty()) {
@@ -93,7 +140,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     return out;
   }
   out.mesh = surface.mesh;
-  out.smooth = FairThroughPoints(surface.mesh, Attachments(surface, reliability), options.smooth).mesh;
+  out.smooth = fair.mesh;
   for (int point : surface.scene_point)
     if (point >= 0) out.point_used[point] = 1;
   out.region = BoundingBox(out.mesh).merged(BoundingBox(out.smooth));

@@ -17,7 +17,6 @@ using Sparse = Eigen::SparseMatrix<double>;
 using Triplet = Eigen::Triplet<double>;
 
 constexpr double kMinSigmaRel = 5e-4;  // of the diagonal: no sparse point is surer than this
-constexpr double kMaxCot = 10;         // slivers must not dominate
 constexpr double kTrustedRange = 4;    // usual distances: farther attachments lose most of their weight
 
 double Median(std::vector<double> values) {
@@ -25,22 +24,21 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+// The Laplacian of a mesh of nearly equilateral triangles, where the cotangent weights are all 1/√3. Unlike those of
+// the triangles as they come out, it cannot turn negative or blow up on a sliver.
 struct Laplacian {
-  Sparse stiffness;      // cotangent weights, symmetric, rows sum to zero
-  Eigen::VectorXd area;  // a vertex
+  Sparse stiffness;  // symmetric, rows sum to zero
+  double area = 0;   // a vertex
 };
 
-Laplacian CotanLaplacian(const TriangleMesh& mesh) {
+Laplacian EvenLaplacian(const TriangleMesh& mesh) {
   const int n = static_cast<int>(mesh.vertices.size());
-  Laplacian out{Sparse(n, n), Eigen::VectorXd::Constant(n, 1e-300)};
+  Laplacian out{Sparse(n, n), SurfaceArea(mesh) / n};
+  const double w = 0.5 / std::sqrt(3.0);  // every edge comes up in two faces
   std::vector<Triplet> entries;
   for (const Eigen::Vector3i& f : mesh.faces)
     for (int k = 0; k < 3; ++k) {
-      const int i = f[(k + 1) % 3], j = f[(k + 2) % 3];
-      const Eigen::Vector3d a = mesh.vertices[i] - mesh.vertices[f[k]], b = mesh.vertices[j] - mesh.vertices[f[k]];
-      const double area2 = a.cross(b).norm();
-      out.area[f[k]] += area2 / 6;
-      const double w = 0.5 * std::clamp(area2 > 0 ? a.dot(b) / area2 : kMaxCot, -kMaxCot, kMaxCot);
+      const int i = f[k], j = f[(k + 1) % 3];
       entries.insert(entries.end(), {{i, j, -w}, {j, i, -w}, {i, i, w}, {j, j, w}});
     }
   out.stiffness.setFromTriplets(entries.begin(), entries.end());
@@ -85,7 +83,8 @@ std::vector<double> Trust(const std::vector<Attachment>& attachments, const std:
   const double typical = std::max(1.4826 * Median(distances), min_sigma);
   std::vector<double> trust;
   for (size_t i = 0; i < feet.size(); ++i) {
-    const double r = feet[i].distance / (kTrustedRange * std::max(typical, attachments[i].sigma));
+    const double range = kTrustedRange * attachments[i].credit * std::max(typical, attachments[i].sigma);
+    const double r = feet[i].distance / range;
     trust.push_back(1 / std::pow(1 + r * r, 2));
   }
   return trust;
@@ -93,8 +92,7 @@ std::vector<double> Trust(const std::vector<Attachment>& attachments, const std:
 
 // The thin-plate matrix λ Lᵀ A⁻¹ L.
 Sparse ThinPlate(const Laplacian& laplacian, double lambda) {
-  const Eigen::VectorXd inverse_area = laplacian.area.cwiseInverse();
-  return Sparse(laplacian.stiffness.transpose() * inverse_area.asDiagonal() * laplacian.stiffness) * lambda;
+  return Sparse(laplacian.stiffness * laplacian.stiffness) * (lambda / laplacian.area);
 }
 
 struct Springs {
@@ -138,11 +136,9 @@ void FairOptions::Visit(OptionVisitor& v) {
            .min = 0.01,
            .max = 10},
           smoothing);
-  v.Field({.name = "stay",
-           .help = "Pull towards the sparse surface where there are no points, against that of the points",
-           .min = 0,
-           .max = 1},
-          stay);
+  v.Field(
+      {.name = "stay", .help = "Pull of every round to where it began, against that of the points", .min = 0, .max = 1},
+      stay);
   v.Field({.name = "rounds", .help = "Solves of the fairing", .min = 1, .max = 50}, rounds);
 }
 
@@ -150,15 +146,13 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
                              const FairOptions& options) {
   GLINT_CHECK(!mesh.empty());
   const double diagonal = Diagonal(mesh);
-  const TriangleMesh start = RemeshEvenly(mesh, options.edge_rel * diagonal);
-  FairResult out{start, std::vector<double>(attachments.size(), 1.0)};
+  FairResult out{RemeshEvenly(mesh, options.edge_rel * diagonal), std::vector<double>(attachments.size(), 1.0)};
   if (attachments.empty()) return out;
-  const int n = static_cast<int>(start.vertices.size());
-  const double area = SurfaceArea(start);
-  const double density = EffectiveCount(attachments, area) / area;
   const double min_sigma = kMinSigmaRel * diagonal;
   for (int round = 0; round < options.rounds; ++round) {
-    const Laplacian laplacian = CotanLaplacian(out.mesh);
+    const double area = SurfaceArea(out.mesh);
+    const double density = EffectiveCount(attachments, area) / area;
+    const Laplacian laplacian = EvenLaplacian(out.mesh);
     const std::vector<Foot> feet = FeetOf(attachments, out.mesh);
     // The first distances are those to flat facets: large also for good points.
     if (round > 0) out.trust = Trust(attachments, feet, min_sigma);
@@ -168,8 +162,9 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     // A thin plate on springs of density ρw bends over ℓ = (λ/ρw)^¼; ℓ = smoothing · ρ^−½.
     const double spring = Median(weights);
     const double lambda = std::pow(SmoothingOf(options, round), 4) * spring / density;
+    const int n = static_cast<int>(out.mesh.vertices.size());
     Springs springs(n);
-    for (int v = 0; v < n; ++v) springs.Hold(v, start.vertices[v], options.stay * spring * density * laplacian.area[v]);
+    for (int v = 0; v < n; ++v) springs.Hold(v, out.mesh.vertices[v], options.stay * spring * density * laplacian.area);
     for (size_t i = 0; i < feet.size(); ++i) springs.Attach(feet[i], attachments[i].position, weights[i]);
     Sparse system(n, n);
     system.setFromTriplets(springs.entries.begin(), springs.entries.end());
@@ -179,6 +174,7 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     const Eigen::MatrixX3d x = solver.solve(springs.right);
     if (!x.allFinite()) return out;
     for (int v = 0; v < n; ++v) out.mesh.vertices[v] = x.row(v);
+    out.mesh = RemeshEvenly(out.mesh, options.edge_rel * diagonal, 1);
   }
   out.trust = Trust(attachments, FeetOf(attachments, out.mesh), min_sigma);
   return out;

@@ -18,10 +18,12 @@ struct FairOptions {
   void Visit(OptionVisitor& v);
 };
 
-// A place that the surface should pass, with its standard deviation (world units).
+// A place that the surface should pass, with its standard deviation (world units). `credit` widens (> 1) or narrows
+// the range in which it is believed against its neighbours.
 struct Attachment {
   Eigen::Vector3d position;
   double sigma;
+  double credit = 1;
 };
 
 struct FairResult {
@@ -31,8 +33,8 @@ struct FairResult {
   std::vector<double> trust;
 };
 
-// Remeshes evenly, then minimises (sparse Cholesky; attached again and robustly weighted each round)
-//   λ ∫‖Δx‖² + Σᵢ wᵢ ‖x(attached point of i) − pᵢ‖² + stay · (the same density of attachments all over the start)
+// Minimises (sparse Cholesky; remeshed evenly, attached again and robustly weighted each round)
+//   λ ∫‖Δx‖² + Σᵢ wᵢ ‖x(attached point of i) − pᵢ‖² + stay · (such springs all over, to where the round began)
 // with λ set so that the surface bends over `smoothing` times the spacing of the attachments. The thin-plate energy is
 // the linearised Willmore energy, whose closed minimisers are spheres: between points a convex body bulges as it
 // should, where flat facets cut 2–3 % off. The rounds go from stiff to soft, so that points which disagree with their

@@ -123,7 +123,7 @@ void FindByFocus(const Scene& scene, const PointReliability& reliability, const 
     const bool on_ground = choice.ground && choice.ground->plane.signedDistance(x) < choice.ground->tolerance;
     if (on_ground) choice.role[i] = PointRole::kGround;
     above_band.push_back(on_ground ? 0 : 1);
-    vertices.push_back({x, static_cast<int>(i), reliability.sigma[i], true});
+    vertices.push_back({x, static_cast<int>(i), reliability.sigma[i]});
   }
   const SparseCells cells = BuildSparseCells(scene, vertices);
   const Tetrahedra& t = cells.tetrahedra;

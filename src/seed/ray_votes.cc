@@ -5,9 +5,12 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "geometry/ray_caster.h"
 
 namespace glint {
 namespace {
@@ -54,12 +57,28 @@ Exit LeavingFacet(const Tetrahedra& tets, int cell, int entry, const Eigen::Vect
   return best;
 }
 
-// Walks from a corner of the triangulation along a ray; visit(cell, facet, t) at every facet that is left, and returns
-// the cell at distance t_end (an infinite cell if the hull ends before).
+// Follows a ray from `exit` of `cell` on; visit(cell, facet, t) at every facet that is left, and returns the cell at
+// distance t_end from the origin (an infinite cell if the hull ends before).
 template <class Visit>
-int Walk(const Tetrahedra& tets, const std::vector<int>& around, int point, const Eigen::Vector3d& direction,
-         double t_end, const Visit& visit) {
-  const Eigen::Vector3d& origin = tets.points[point];
+int Follow(const Tetrahedra& tets, int cell, Exit exit, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+           double t_end, const Visit& visit) {
+  for (size_t step = 0; step < tets.cells.size(); ++step) {
+    if (exit.facet < 0 || !(exit.t < t_end)) return cell;
+    visit(cell, exit.facet, exit.t);
+    const int next = tets.neighbors[cell][exit.facet];
+    if (tets.IsInfinite(next)) return next;
+    int entry = 0;
+    while (tets.neighbors[next][entry] != cell) ++entry;
+    cell = next;
+    exit = LeavingFacet(tets, cell, entry, origin, direction);
+  }
+  return cell;
+}
+
+// The same from a corner of the triangulation.
+template <class Visit>
+int FollowFromPoint(const Tetrahedra& tets, const std::vector<int>& around, int point, const Eigen::Vector3d& direction,
+                    double t_end, const Visit& visit) {
   int cell = -1, infinite = -1;
   double best = -1e-9;  // rounding: a ray along a facet belongs to either side
   for (int c : around) {
@@ -74,38 +93,54 @@ int Walk(const Tetrahedra& tets, const std::vector<int>& around, int point, cons
     }
   }
   if (cell < 0) return infinite;
-  Exit exit;
-  exit.facet = tets.CornerOf(cell, point);
-  const Eigen::Vector3d a = tets.Corner(cell, kOutwardFacet[exit.facet][0]);
+  const int facet = tets.CornerOf(cell, point);
+  const Eigen::Vector3d& origin = tets.points[point];
+  const Eigen::Vector3d a = tets.Corner(cell, kOutwardFacet[facet][0]);
   const Eigen::Vector3d n =
-      (tets.Corner(cell, kOutwardFacet[exit.facet][1]) - a).cross(tets.Corner(cell, kOutwardFacet[exit.facet][2]) - a);
-  exit.t = (a - origin).dot(n) / direction.dot(n);
-  for (size_t step = 0; step < tets.cells.size(); ++step) {
-    if (exit.facet < 0 || !(exit.t < t_end)) return cell;
-    visit(cell, exit.facet, exit.t);
-    const int next = tets.neighbors[cell][exit.facet];
-    if (tets.IsInfinite(next)) return next;
-    int entry = 0;
-    while (tets.neighbors[next][entry] != cell) ++entry;
-    cell = next;
-    exit = LeavingFacet(tets, cell, entry, origin, direction);
-  }
-  return cell;
+      (tets.Corner(cell, kOutwardFacet[facet][1]) - a).cross(tets.Corner(cell, kOutwardFacet[facet][2]) - a);
+  return Follow(tets, cell, {facet, (a - origin).dot(n) / direction.dot(n)}, origin, direction, t_end, visit);
 }
 
-}  // namespace
+// Finds where lines enter the convex hull.
+class Hull {
+ public:
+  explicit Hull(const Tetrahedra& tets) : tets_(tets), caster_(Border(tets, facets_)) {
+    for (const Eigen::Vector3d& p : tets.points) box_.extend(p);
+  }
 
-RayVotes CastVotes(const Tetrahedra& tetrahedra, const std::vector<SightLine>& lines, const std::vector<double>& sigma,
-                   const std::vector<uint8_t>& is_solid) {
-  GLINT_CHECK_EQ(sigma.size(), tetrahedra.points.size());
-  GLINT_CHECK_EQ(is_solid.size(), tetrahedra.points.size());
-  const size_t num_cells = tetrahedra.cells.size();
-  RayVotes votes;
-  votes.outside.assign(num_cells, 0);
-  votes.inside.assign(num_cells, 0);
-  votes.crossed.assign(num_cells, 0);
-  votes.facets.assign(num_cells, {0, 0, 0, 0});
-  if (num_cells == 0) return votes;
+  // Follows the whole line through `from` along `direction`; visit(cell, facet, t) with t measured from `from`.
+  template <class Visit>
+  void FollowLine(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double t_end,
+                  const Visit& visit) const {
+    const double before = (from - box_.center()).norm() + box_.diagonal().norm();
+    const std::optional<RayHit> hit = caster_.Intersect(from - before * direction, direction);
+    if (!hit || hit->t - before > t_end) return;
+    const auto& [cell, facet] = facets_[hit->face];
+    Follow(tets_, cell, LeavingFacet(tets_, cell, facet, from, direction), from, direction, t_end, visit);
+  }
+
+ private:
+  static TriangleMesh Border(const Tetrahedra& tets, std::vector<std::pair<int, int>>& facets) {
+    TriangleMesh mesh;
+    mesh.vertices = tets.points;
+    for (int c = 0; c < static_cast<int>(tets.cells.size()); ++c)
+      for (int k = 0; k < 4 && !tets.IsInfinite(c); ++k) {
+        if (!tets.IsInfinite(tets.neighbors[c][k])) continue;
+        facets.emplace_back(c, k);
+        const auto& corner = kOutwardFacet[k];
+        mesh.faces.emplace_back(tets.cells[c][corner[0]], tets.cells[c][corner[1]], tets.cells[c][corner[2]]);
+      }
+    return mesh;
+  }
+
+  const Tetrahedra& tets_;
+  std::vector<std::pair<int, int>> facets_;  // finite cell and facet, per face of the caster's mesh
+  RayCaster caster_;
+  Eigen::AlignedBox3d box_;
+};
+
+void CastSightLines(const Tetrahedra& tetrahedra, const std::vector<SightLine>& lines, const std::vector<double>& sigma,
+                    RayVotes& votes) {
   ParallelChunks(lines.size(), kGrain, [&](size_t begin, size_t end) {
     std::vector<int> around;
     int around_point = -1;
@@ -118,18 +153,49 @@ RayVotes CastVotes(const Tetrahedra& tetrahedra, const std::vector<SightLine>& l
       if (!(distance > 0)) continue;
       const Eigen::Vector3d direction = to_eye / distance;
       const double s = sigma[lines[i].point];
-      const int last = Walk(tetrahedra, around, point, direction, distance, [&](int cell, int facet, double t) {
-        const double soft = s > 0 ? 1 - std::exp(-t * t / (2 * s * s)) : 1;
-        const int64_t vote = std::llround(soft * kVote);
-        Add(votes.facets[cell][facet], vote);
-        Add(votes.crossed[cell], vote);
-      });
+      const int last =
+          FollowFromPoint(tetrahedra, around, point, direction, distance, [&](int cell, int facet, double t) {
+            const double soft = s > 0 ? 1 - std::exp(-t * t / (2 * s * s)) : 1;
+            const int64_t vote = std::llround(soft * kVote);
+            Add(votes.facets[cell][facet], vote);
+            Add(votes.crossed[cell], vote);
+          });
       Add(votes.outside[last], kVote);
-      if (!is_solid[lines[i].point]) continue;
-      const int behind = Walk(tetrahedra, around, point, -direction, 3 * s, [](int, int, double) {});
+      const int behind = FollowFromPoint(tetrahedra, around, point, -direction, 3 * s, [](int, int, double) {});
       Add(votes.inside[behind], kVote);
     }
   });
+}
+
+void CastFreeLines(const Tetrahedra& tetrahedra, const std::vector<FreeLine>& lines, RayVotes& votes) {
+  if (lines.empty()) return;
+  const Hull hull(tetrahedra);
+  ParallelFor(lines.size(), kGrain, [&](size_t i) {
+    const Eigen::Vector3d to_eye = lines[i].eye - lines[i].from;
+    const double distance = to_eye.norm();
+    if (!(distance > 0)) return;
+    hull.FollowLine(lines[i].from, to_eye / distance, distance, [&](int cell, int facet, double t) {
+      if (t <= 0) return;
+      Add(votes.facets[cell][facet], kVote);
+      Add(votes.crossed[cell], kVote);
+    });
+  });
+}
+
+}  // namespace
+
+RayVotes CastVotes(const Tetrahedra& tetrahedra, const std::vector<SightLine>& lines, const std::vector<double>& sigma,
+                   const std::vector<FreeLine>& free_lines) {
+  GLINT_CHECK_EQ(sigma.size(), tetrahedra.points.size());
+  const size_t num_cells = tetrahedra.cells.size();
+  RayVotes votes;
+  votes.outside.assign(num_cells, 0);
+  votes.inside.assign(num_cells, 0);
+  votes.crossed.assign(num_cells, 0);
+  votes.facets.assign(num_cells, {0, 0, 0, 0});
+  if (num_cells == 0) return votes;
+  CastSightLines(tetrahedra, lines, sigma, votes);
+  CastFreeLines(tetrahedra, free_lines, votes);
   return votes;
 }
 

@@ -16,6 +16,12 @@ struct SightLine {
   Eigen::Vector3d eye;
 };
 
+// A line of sight that ends at a place that is no point of the triangulation: it only says what is free.
+struct FreeLine {
+  Eigen::Vector3d from;
+  Eigen::Vector3d eye;
+};
+
 // Votes are integers (kVote for one line) so that their sums do not depend on the order of adding.
 inline constexpr int64_t kVote = 1024;
 
@@ -28,8 +34,8 @@ struct RayVotes {
 
 // Labatut, Pons, Keriven 2007, section 3: a line adds to `facets` of all it crosses from its point to the camera,
 // softly within `sigma` of the point (1 − exp(−t²/2σ²)), to `outside` of the camera's cell, and to `inside` of the cell
-// 3 sigma behind the point. `sigma` per point, world units. Lines of points with is_solid = 0 only carve: no `inside`.
+// 3 sigma behind the point. `sigma` per point, world units. Free lines have no `inside` and no softness.
 RayVotes CastVotes(const Tetrahedra& tetrahedra, const std::vector<SightLine>& lines, const std::vector<double>& sigma,
-                   const std::vector<uint8_t>& is_solid);
+                   const std::vector<FreeLine>& free_lines);
 
 }  // namespace glint

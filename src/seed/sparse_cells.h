@@ -16,14 +16,15 @@ struct SparseCells {
   std::vector<int> scene_point;  // per point of the triangulation; −1: extra
 };
 
-// A point of the triangulation. Scene points may be moved (snapped to the ground); extra ones have no lines of sight.
+// A point of the triangulation; extra ones (scene_point −1) have no lines of sight.
 struct SparseVertex {
   Eigen::Vector3d position;
   int scene_point = -1;
-  double sigma = 0;   // world units
-  bool solid = true;  // matter behind it; otherwise its lines only carve
+  double sigma = 0;  // world units
 };
 
-SparseCells BuildSparseCells(const Scene& scene, const std::vector<SparseVertex>& vertices);
+// `context`: scene points that are no vertices, but whose lines of sight tell what is free.
+SparseCells BuildSparseCells(const Scene& scene, const std::vector<SparseVertex>& vertices,
+                             const std::vector<int>& context = {});
 
 }  // namespace glint

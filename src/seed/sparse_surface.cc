@@ -1,91 +1,76 @@
 #include "seed/sparse_surface.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "seed/cell_surface.h"
-#include "seed/point_index.h"
+#include "seed/convex_hull.h"
 #include "seed/sparse_cells.h"
 
 namespace glint {
 namespace {
 
-constexpr double kReach = 1.0;  // object diagonals around the object: context this near carves
-constexpr int kBaseGrid = 24;   // points across the hidden ground
+constexpr int kBaseGrid = 24;         // points across the foot
+constexpr double kFootHeight = 0.12;  // of the object's height: points lower than this show where its foot is
+constexpr size_t kMinFootPoints = 3;
+constexpr size_t kMinContextViews = 3;  // two views agree on many a mismatch, and the context needs no rare points
 
-enum class VertexKind : uint8_t { kObject, kGround, kContext };
-
-struct Vertices {
-  std::vector<SparseVertex> list;
-  std::vector<VertexKind> kind;
-
-  void Add(const SparseVertex& vertex, VertexKind k) {
-    list.push_back(vertex);
-    kind.push_back(k);
+// Where the object stands: the part of the ground below its lowest points.
+class Foot {
+ public:
+  Foot(const Scene& scene, const ObjectChoice& choice) {
+    if (!choice.ground) return;
+    plane_ = choice.ground->plane;
+    u_ = plane_.normal().unitOrthogonal();
+    v_ = plane_.normal().cross(u_);
+    double height = 0;
+    for (size_t i = 0; i < scene.points.size(); ++i)
+      if (choice.role[i] == PointRole::kObject)
+        height = std::max(height, plane_.signedDistance(scene.points[i].position));
+    std::vector<Eigen::Vector2d> low;
+    for (size_t i = 0; i < scene.points.size(); ++i)
+      if (choice.role[i] == PointRole::kObject &&
+          plane_.signedDistance(scene.points[i].position) < kFootHeight * height)
+        low.push_back(OnPlane(scene.points[i].position));
+    if (low.size() < kMinFootPoints) return;
+    outline_ = ConvexHull(low);
   }
+
+  // Its outline and a grid that covers it, on the plane.
+  std::vector<Eigen::Vector3d> Points() const {
+    std::vector<Eigen::Vector3d> points;
+    const Eigen::Vector3d origin = -plane_.offset() * plane_.normal();
+    auto add = [&](const Eigen::Vector2d& at) { points.push_back(origin + at.x() * u_ + at.y() * v_); };
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector2d& p : outline_) {
+      box.extend(p);
+      add(p);
+    }
+    const double step = box.isEmpty() ? 0 : box.sizes().maxCoeff() / kBaseGrid;
+    for (int i = 0; step > 0 && i <= kBaseGrid; ++i)
+      for (int j = 0; j <= kBaseGrid; ++j) {
+        const Eigen::Vector2d at = box.min() + step * Eigen::Vector2d(i + (j % 2) * 0.5, j);
+        if (DistanceToConvex(outline_, at) == 0) add(at);
+      }
+    return points;
+  }
+
+ private:
+  Eigen::Vector2d OnPlane(const Eigen::Vector3d& x) const { return {x.dot(u_), x.dot(v_)}; }
+
+  Eigen::Hyperplane<double, 3> plane_;
+  Eigen::Vector3d u_ = Eigen::Vector3d::UnitX(), v_ = Eigen::Vector3d::UnitY();
+  std::vector<Eigen::Vector2d> outline_;  // convex, counter-clockwise; empty: the object shows no foot
 };
 
-Eigen::AlignedBox3d ObjectBox(const Scene& scene, const ObjectChoice& choice) {
-  Eigen::AlignedBox3d box;
-  for (size_t i = 0; i < scene.points.size(); ++i)
-    if (choice.role[i] == PointRole::kObject) box.extend(scene.points[i].position);
-  return box;
-}
-
-// A grid on the plane below the object, where no point of the ground is seen.
-void AddHiddenGround(const Scene& scene, const ObjectChoice& choice, Vertices& vertices) {
-  const Eigen::Hyperplane<double, 3>& plane = choice.ground->plane;
-  const Eigen::Vector3d u = plane.normal().unitOrthogonal(), v = plane.normal().cross(u);
-  Eigen::AlignedBox2d footprint;
-  for (size_t i = 0; i < scene.points.size(); ++i)
-    if (choice.role[i] == PointRole::kObject)
-      footprint.extend(Eigen::Vector2d(scene.points[i].position.dot(u), scene.points[i].position.dot(v)));
-  const double step = footprint.sizes().maxCoeff() / kBaseGrid;
-  if (!(step > 0)) return;
-  std::vector<Eigen::Vector3d> seen;
-  for (size_t i = 0; i < vertices.list.size(); ++i)
-    if (vertices.kind[i] == VertexKind::kGround) seen.push_back(vertices.list[i].position);
-  const PointIndex index(seen);
-  const Eigen::Vector3d origin = -plane.offset() * plane.normal();
-  for (int i = 0; i <= kBaseGrid; ++i)
-    for (int j = 0; j <= kBaseGrid; ++j) {
-      const Eigen::Vector2d at = footprint.min() + step * Eigen::Vector2d(i + (j % 2) * 0.5, j);
-      if (!footprint.contains(at)) continue;
-      const Eigen::Vector3d x = origin + at.x() * u + at.y() * v;
-      if (!seen.empty() && (seen[index.Nearest(x, 1)[0]] - x).norm() < step) continue;
-      vertices.Add({x, -1, 0, false}, VertexKind::kGround);
-    }
-}
-
-Vertices ChooseVertices(const Scene& scene, const PointReliability& reliability, const ObjectChoice& choice) {
-  const Eigen::AlignedBox3d box = ObjectBox(scene, choice);
-  const double reach = kReach * box.diagonal().norm();
-  Vertices out;
-  for (size_t i = 0; i < scene.points.size(); ++i) {
-    if (choice.role[i] == PointRole::kUnused) continue;
-    Eigen::Vector3d x = scene.points[i].position;
-    if (box.exteriorDistance(x) > reach) continue;
-    const bool object = choice.role[i] == PointRole::kObject;
-    const bool ground = choice.ground && std::abs(choice.ground->plane.signedDistance(x)) < choice.ground->tolerance;
-    if (ground && !object) x = choice.ground->plane.projection(x);
-    out.Add({x, static_cast<int>(i), reliability.sigma[i], object},
-            object ? VertexKind::kObject : (ground ? VertexKind::kGround : VertexKind::kContext));
-  }
-  if (choice.ground) AddHiddenGround(scene, choice, out);
-  return out;
-}
-
-std::vector<uint8_t> Permitted(const Tetrahedra& t, const std::vector<VertexKind>& kind, const ObjectChoice& choice) {
+// Matter lies above the ground, and has at least one corner that is a point of the object.
+std::vector<uint8_t> Permitted(const SparseCells& cells, const ObjectChoice& choice) {
+  const Tetrahedra& t = cells.tetrahedra;
   std::vector<uint8_t> permitted(t.cells.size(), 0);
   for (int c = 0; c < static_cast<int>(t.cells.size()); ++c) {
     if (t.IsInfinite(c)) continue;
-    int object = 0, context = 0;
-    for (int v : t.cells[c]) {
-      object += kind[v] == VertexKind::kObject;
-      context += kind[v] == VertexKind::kContext;
-    }
-    const bool above = !choice.ground || choice.ground->plane.signedDistance(t.Centroid(c)) > 0;
-    permitted[c] = object > 0 && context == 0 && above;
+    const bool object =
+        std::any_of(t.cells[c].begin(), t.cells[c].end(), [&](int v) { return cells.scene_point[v] >= 0; });
+    permitted[c] = object && (!choice.ground || choice.ground->plane.signedDistance(t.Centroid(c)) > 0);
   }
   return permitted;
 }
@@ -118,17 +103,25 @@ void FillCavities(const Tetrahedra& t, std::vector<uint8_t>& labels) {
 SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reliability, const ObjectChoice& choice,
                                 const CutOptions& options) {
   SparseSurface out;
-  const Vertices vertices = ChooseVertices(scene, reliability, choice);
-  const SparseCells cells = BuildSparseCells(scene, vertices.list);
+  std::vector<SparseVertex> vertices;
+  std::vector<int> context;
+  for (size_t i = 0; i < scene.points.size(); ++i) {
+    if (choice.role[i] == PointRole::kUnused) continue;
+    if (choice.role[i] == PointRole::kObject)
+      vertices.push_back({scene.points[i].position, static_cast<int>(i), reliability.sigma[i]});
+    else if (scene.points[i].observations.size() >= kMinContextViews)
+      context.push_back(static_cast<int>(i));
+  }
+  for (const Eigen::Vector3d& x : Foot(scene, choice).Points()) vertices.push_back({x, -1, 0});
+  const SparseCells cells = BuildSparseCells(scene, vertices, context);
   const Tetrahedra& t = cells.tetrahedra;
   if (t.cells.empty()) return out;
-  std::vector<uint8_t> labels = CutCells(t, cells.votes, Permitted(t, vertices.kind, choice), options);
+  std::vector<uint8_t> labels = CutCells(t, cells.votes, Permitted(cells, choice), options);
   KeepLargest(t, labels);
   FillCavities(t, labels);
   std::vector<int> vertex_point;
   out.mesh = CellSurface(t, labels, &vertex_point);
-  for (int p : vertex_point)
-    out.scene_point.push_back(vertices.kind[p] == VertexKind::kObject ? cells.scene_point[p] : -1);
+  for (int p : vertex_point) out.scene_point.push_back(cells.scene_point[p]);
   return out;
 }
 
