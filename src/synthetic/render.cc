@@ -126,9 +126,9 @@ class Renderer {
       if (nx < 0 || ny < 0 || nx >= width_ || ny >= height_) continue;
       const Sample& there = samples_[Index(nx, ny)];
       if (there.kind != here.kind) return true;
-      // A difference of about 15 levels.
+      // A difference of about 20 levels.
       const Array3f a = here.radiance.min(1).max(0).sqrt(), b = there.radiance.min(1).max(0).sqrt();
-      if ((a - b).abs().maxCoeff() > 0.06f) return true;
+      if ((a - b).abs().maxCoeff() > 0.08f) return true;
     }
     return false;
   }

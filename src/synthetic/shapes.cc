@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "synthetic/random.h"
@@ -103,43 +104,52 @@ class Slab : public ImplicitShape {
     double rounding;                 // difference of distances over which faces blend
   };
   Slab(const Form& form, const Waves& waves) : form_(form), waves_(waves) {
-    radius_ = std::hypot(form.half_length, form.half_width) + form.rounding;
+    const double a2 = form.half_length * form.half_length, b2 = form.half_width * form.half_width;
+    const double low = -form.bottom - form.bottom_curve * (form.curve_x * a2 + form.curve_y * b2);
+    const double high = waves.amplitude_bound();
+    center_ = Vector3d(0, 0, 0.5 * (low + high));
+    // The superellipse reaches as far as (a⁴ + b⁴)^¼.
+    radius_ = std::hypot(std::sqrt(std::hypot(a2, b2)), 0.5 * (high - low));
     const double slope = 2 * radius_ * std::max(form.curve_x, form.curve_y) + waves.slope_bound();
-    lipschitz_ = std::hypot(1, slope);
+    scale_ = 1 / std::hypot(1, slope);
+    per_length_ = 1 / form.half_length;
+    per_width_ = 1 / form.half_width;
+    outline_scale_ = std::min(form.half_length, form.half_width);
   }
   double Value(const Vector3d& x) const override {
-    const auto [top, bottom, side] = Sides(x);
-    return SmoothMax(SmoothMax(top, bottom, form_.rounding), side, form_.rounding);
+    const auto [top, bottom] = Heights(x);
+    const double height = SmoothMax(top, bottom, form_.rounding);
+    const double u = x.x() * per_length_, v = x.y() * per_width_, fourth = u * u * u * u + v * v * v * v;
+    // Roots only where the outline matters.
+    const double least = std::max(1 + (height - form_.rounding) / outline_scale_, 0.0);
+    if (fourth <= least * least * least * least) return height;
+    return SmoothMax(height, (std::sqrt(std::sqrt(fourth)) - 1) * outline_scale_, form_.rounding);
   }
   Vector3d Gradient(const Vector3d& x) const override {
-    const auto [top_value, bottom_value, side_value] = Sides(x);
+    const auto [top_value, bottom_value] = Heights(x);
+    const double u = x.x() * per_length_, v = x.y() * per_width_;
+    const double norm = std::max(std::sqrt(std::sqrt(u * u * u * u + v * v * v * v)), 1e-9);
     double top_weight, height_weight;
     const double height = SmoothMax(top_value, bottom_value, form_.rounding, &top_weight);
-    SmoothMax(height, side_value, form_.rounding, &height_weight);
-    Vector3d crown(-2 * form_.curve_x * x.x(), -2 * form_.curve_y * x.y(), 0);
+    SmoothMax(height, (norm - 1) * outline_scale_, form_.rounding, &height_weight);
+    const Vector3d crown(-2 * form_.curve_x * x.x(), -2 * form_.curve_y * x.y(), 0);
     const Vector3d top = Vector3d::UnitZ() - crown - waves_.Gradient(x);
     const Vector3d bottom = form_.bottom_curve * crown - Vector3d::UnitZ();
-    const double u = x.x() / form_.half_length, v = x.y() / form_.half_width;
-    const double norm = std::max(std::pow(u * u * u * u + v * v * v * v, 0.25), 1e-9), cube = norm * norm * norm;
-    const Vector3d side(u * u * u / cube / form_.half_length, v * v * v / cube / form_.half_width, 0);
-    return height_weight / lipschitz_ * (top_weight * top + (1 - top_weight) * bottom) +
-           (1 - height_weight) * std::min(form_.half_length, form_.half_width) * side;
+    const Vector3d side = Vector3d(u * u * u * per_length_, v * v * v * per_width_, 0) / (norm * norm * norm);
+    return height_weight * scale_ * (top_weight * top + (1 - top_weight) * bottom) +
+           (1 - height_weight) * outline_scale_ * side;
   }
 
  private:
-  // Signed distances, not exceeded, to the top, the bottom and the outline.
-  std::array<double, 3> Sides(const Vector3d& x) const {
+  // Signed distances, not exceeded, to the top and the bottom.
+  std::pair<double, double> Heights(const Vector3d& x) const {
     const double crown = -form_.curve_x * x.x() * x.x() - form_.curve_y * x.y() * x.y();
-    const double u = x.x() / form_.half_length, v = x.y() / form_.half_width;
-    const double outline = std::sqrt(std::sqrt(u * u * u * u + v * v * v * v)) - 1;
-    return {(x.z() - crown - waves_.Value(x)) / lipschitz_,
-            (form_.bottom_curve * crown - form_.bottom - x.z()) / lipschitz_,
-            outline * std::min(form_.half_length, form_.half_width)};
+    return {(x.z() - crown - waves_.Value(x)) * scale_, (form_.bottom_curve * crown - form_.bottom - x.z()) * scale_};
   }
 
   Form form_;
   Waves waves_;
-  double lipschitz_ = 1;
+  double scale_, per_length_, per_width_, outline_scale_;
 };
 
 // A car hood: thick, its crown convex with gentle swells.

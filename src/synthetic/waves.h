@@ -2,10 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
+#include "core/check.h"
 #include "synthetic/random.h"
 
 namespace glint {
@@ -28,31 +29,44 @@ inline double FastSine(double x) {
   return (1 - 2 * parity * parity) * (r + r * r2 * sum);
 }
 
+// Up to eight waves, kept as a structure of arrays for vector code.
 class Waves {
  public:
   Waves() = default;
 
   // `slope`: amplitude times wave number of each wave. `flat`: no wave runs along z.
   Waves(Random& random, int count, double min_number, double max_number, double slope, bool flat) {
+    GLINT_CHECK_LE(count, kMax);
     for (int i = 0; i < count; ++i) {
       const double number = random.Uniform(min_number, max_number);
       Eigen::Vector3d k = random.UnitVector();
       if (flat) k.z() = 0;
-      waves_.push_back({number * k.normalized(), slope / number, random.Uniform(0, 2 * std::numbers::pi)});
+      k *= number / k.norm();
+      kx_[i] = k.x(), ky_[i] = k.y(), kz_[i] = k.z();
+      amplitude_[i] = slope / number;
+      phase_[i] = random.Uniform(0, 2 * std::numbers::pi);
       slope_bound_ += slope;
       amplitude_bound_ += slope / number;
     }
+    used_ = (count + 1) / 2 * 2;
   }
 
   double Value(const Eigen::Vector3d& x) const {
+    double terms[kMax];
+    for (int i = 0; i < used_; ++i)
+      terms[i] = amplitude_[i] * FastSine(kx_[i] * x.x() + ky_[i] * x.y() + kz_[i] * x.z() + phase_[i]);
     double sum = 0;
-    for (const Wave& w : waves_) sum += w.amplitude * FastSine(w.k.dot(x) + w.phase);
+    for (int i = 0; i < used_; ++i) sum += terms[i];
     return sum;
   }
 
   Eigen::Vector3d Gradient(const Eigen::Vector3d& x) const {
+    double terms[kMax];
+    for (int i = 0; i < used_; ++i)
+      terms[i] = amplitude_[i] *
+                 FastSine(kx_[i] * x.x() + ky_[i] * x.y() + kz_[i] * x.z() + phase_[i] + 0.5 * std::numbers::pi);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Wave& w : waves_) sum += w.amplitude * FastSine(w.k.dot(x) + w.phase + 0.5 * std::numbers::pi) * w.k;
+    for (int i = 0; i < used_; ++i) sum += terms[i] * Eigen::Vector3d(kx_[i], ky_[i], kz_[i]);
     return sum;
   }
 
@@ -60,11 +74,10 @@ class Waves {
   double amplitude_bound() const { return amplitude_bound_; }
 
  private:
-  struct Wave {
-    Eigen::Vector3d k;
-    double amplitude, phase;
-  };
-  std::vector<Wave> waves_;
+  static constexpr int kMax = 8;
+  using Numbers = std::array<double, kMax>;
+  Numbers kx_ = {}, ky_ = {}, kz_ = {}, amplitude_ = {}, phase_ = {};
+  int used_ = 0;  // even: an odd count has a wave without amplitude
   double slope_bound_ = 0, amplitude_bound_ = 0;
 };
 
