@@ -22,8 +22,9 @@ enum class HighlightStatus {
   kInconsistent,  // contradicts the neighbouring contacts in the bundle
   kNotALobe,      // flat or ragged like print, without the fall-off of a highlight
   kTooFewViews,   // no other views could tell it from paint
+  kWrongSize,     // smaller than the surface's curvature at its ray would make it
 };
-inline constexpr int kNumHighlightStatuses = 12;
+inline constexpr int kNumHighlightStatuses = 13;
 
 std::string_view StatusName(HighlightStatus status);    // "accepted", "stays_put", ... for reports
 std::string_view StatusReason(HighlightStatus status);  // a plain sentence for people

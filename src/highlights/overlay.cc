@@ -46,6 +46,8 @@ const char* ReasonLetters(HighlightStatus status) {
       return "f";
     case HighlightStatus::kTooFewViews:
       return "v";
+    case HighlightStatus::kWrongSize:
+      return "s";
   }
   return "?";
 }

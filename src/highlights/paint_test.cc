@@ -71,7 +71,8 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
   const double pixel_size = brightness.PixelSize(highlight.view);
   const double minor_px =
       2 * std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(highlight.moments_px).eigenvalues()[0]);
-  const double radius_px = std::max(1.5 * pixel_size, 0.5 * minor_px);
+  // Small blobs need some tolerance to be met again; large ones are met anyway, and a wide window would catch marks.
+  const double radius_px = pixel_size * std::clamp(0.5 * minor_px / pixel_size, 1.5, 3.0);
   const auto peak = brightness.MaxNear(highlight.view, highlight.px, radius_px);
   const auto body = brightness.MedianAround(highlight.view, highlight.px, highlight.moments_px);
   if (!peak || !body || *peak - *body < 1e-3) return std::nullopt;

@@ -58,7 +58,8 @@ cv::Mat Surroundings(const std::vector<cv::Mat>& pyramid, int level) {
   return wide;
 }
 
-// Median brightness on a ring around the peak; pixels off the image or the mask are left out.
+// A low quantile of the brightness on a ring around the peak, which a streak or a bright neighbour may cross; pixels
+// off the image or the mask are left out.
 double BodyBrightness(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2i& at) {
   static const auto ring = [] {
     std::array<Eigen::Vector2i, 24> offsets;
@@ -77,8 +78,8 @@ double BodyBrightness(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vect
     samples[n++] = map.ptr<uint16_t>(y)[x];
   }
   if (n == 0) return 0;
-  std::nth_element(samples.begin(), samples.begin() + n / 2, samples.begin() + n);
-  return samples[n / 2] / double(kWhite);
+  std::nth_element(samples.begin(), samples.begin() + n * 3 / 10, samples.begin() + n);
+  return samples[n * 3 / 10] / double(kWhite);
 }
 
 // Scratch memory of the flood fill: one stamp a window pixel.

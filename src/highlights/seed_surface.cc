@@ -57,7 +57,7 @@ double SeedSurface::SpreadAt(const Eigen::Vector3d& x) const {
       if (d < n) std::swap(d, n);
   }
   const double spacing = spacing_scale_ * std::sqrt(nearest.back());
-  return std::clamp(spacing, 0.1 * max_error_world_, max_error_world_);
+  return std::clamp(spacing, 0.1 * max_error_world_ / kErrorOfSpread, max_error_world_ / kErrorOfSpread);
 }
 
 std::optional<SurfaceSample> SeedSurface::Hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
@@ -73,7 +73,7 @@ std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& ori
                                                       const Eigen::Vector3d& direction) const {
   std::vector<SurfaceSample> samples;
   const auto central = Hit(origin, direction);
-  const double spread_world = central ? SpreadAt(central->position) : max_error_world_;
+  const double spread_world = central ? SpreadAt(central->position) : max_error_world_ / kErrorOfSpread;
   if (central && central->normal.dot(direction) < 0) samples.push_back(*central);
   const double depth = central ? (central->position - origin).norm() : (center_ - origin).dot(direction);
   if (!(depth > 0)) return samples;

@@ -28,6 +28,8 @@ std::string_view StatusName(HighlightStatus status) {
       return "not_a_lobe";
     case HighlightStatus::kTooFewViews:
       return "too_few_views";
+    case HighlightStatus::kWrongSize:
+      return "wrong_size";
   }
   return "unknown";
 }
@@ -58,6 +60,8 @@ std::string_view StatusReason(HighlightStatus status) {
       return "flat or ragged like print, without the fall-off of a highlight";
     case HighlightStatus::kTooFewViews:
       return "seen in too few other views to tell it from paint";
+    case HighlightStatus::kWrongSize:
+      return "too small for the curvature of the surface that its ray meets: it lies elsewhere";
   }
   return "unknown";
 }
