@@ -10,7 +10,6 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "geometry/ray_caster.h"
-#include "io/project_images.h"
 
 namespace glint {
 namespace {
@@ -112,18 +111,17 @@ std::array<uint8_t, 3> ErrorColor(double error, double largest) {
   return color;
 }
 
-cv::Mat ComparisonSheet(const std::filesystem::path& photograph, const std::vector<PictureColumn>& columns,
+cv::Mat ComparisonSheet(const cv::Mat& photograph, const std::vector<PictureColumn>& columns,
                         const TriangleMesh& reference, const View& view, double largest_error_deg) {
   const int height = static_cast<int>(kPanelWidth * view.camera.height / view.camera.width);
   const int cell = height + kTitleHeight;
-  cv::Mat sheet(2 * cell + 6, kPanelWidth * (1 + static_cast<int>(columns.size())), CV_8UC3, cv::Scalar::all(255));
+  cv::Mat sheet(2 * cell + kScaleHeight, kPanelWidth * (1 + static_cast<int>(columns.size())), CV_8UC3,
+                cv::Scalar::all(255));
   const auto place = [&](int column, int row, const cv::Mat& panel, const std::string& title) {
     PutTitle(sheet, column * kPanelWidth, row * cell, title);
     panel.copyTo(sheet(cv::Rect(column * kPanelWidth, row * cell + kTitleHeight, kPanelWidth, height)));
   };
-  cv::Mat photo;
-  ReadImage(photograph, photo);
-  place(0, 0, Fitted(photo, kPanelWidth, height), "photograph, highlights found");
+  place(0, 0, Fitted(photograph, kPanelWidth, height), "photograph, highlights found");
   for (size_t c = 0; c < columns.size(); ++c) {
     const int column = static_cast<int>(c) + 1;
     place(column, 0, RenderMesh(*columns[c].mesh, view, kPanelWidth), columns[c].title + ": reflection lines");
@@ -132,7 +130,8 @@ cv::Mat ComparisonSheet(const std::filesystem::path& photograph, const std::vect
     place(column, 1, RenderMesh(reference, view, kPanelWidth, colors), columns[c].title + ": error of the normals");
   }
   place(0, 1, RenderMesh(reference, view, kPanelWidth), "truth: reflection lines");
-  PutScale(sheet, cv::Rect(kPanelWidth * 3 / 2, 2 * cell - kTitleHeight - 14, kPanelWidth, 12), largest_error_deg);
+  PutScale(sheet, cv::Rect(kPanelWidth * 3 / 2, 2 * cell + 4, kPanelWidth, kScaleHeight - kTitleHeight - 4),
+           largest_error_deg);
   return sheet;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -32,9 +32,9 @@ struct PictureColumn {
   std::vector<float> normal_error_deg;  // per vertex of the reference, negative: none
 };
 
-// A photograph (its highlights drawn, if the file has them), the meshes below one another's titles, and the normal
-// error of each drawn on the reference's surface, with the scale of its colours.
-cv::Mat ComparisonSheet(const std::filesystem::path& photograph, const std::vector<PictureColumn>& columns,
+// The photograph, the meshes, and the normal error of each mesh drawn on the reference's surface with the scale of its
+// colours.
+cv::Mat ComparisonSheet(const cv::Mat& photograph, const std::vector<PictureColumn>& columns,
                         const TriangleMesh& reference, const View& view, double largest_error_deg);
 
 // The view that sees most of the vertices with a non-zero mask (all of them if it is empty).

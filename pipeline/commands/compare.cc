@@ -12,10 +12,12 @@
 #include "colmap/project.h"
 #include "colmap/scene.h"
 #include "core/error.h"
+#include "highlights/overlay.h"
 #include "io/mesh_io.h"
 #include "io/project_images.h"
 #include "light/light_io.h"
 #include "metrics/swept_region.h"
+#include "pipeline/artifacts.h"
 #include "pipeline/commands/command.h"
 #include "pipeline/commands/option_flags.h"
 #include "pipeline/comparison.h"
@@ -29,7 +31,7 @@ namespace {
 constexpr double kLargestErrorShownDeg = 20;
 
 struct Arguments {
-  std::string mesh, reference, before, project, lights, transform, region, picture, overlays;
+  std::string mesh, reference, before, project, lights, transform, region, picture, highlights;
   bool json = false;
   CompareOptions options;
   OptionTable table{options};
@@ -89,12 +91,20 @@ std::vector<Region> MakeRegions(const Arguments& arguments, const TriangleMesh& 
   return regions;
 }
 
+std::vector<Highlight> AcceptedIn(const Arguments& arguments, const Scene& scene, const View& view) {
+  std::vector<Highlight> accepted;
+  for (const Highlight& h : ReadHighlights(arguments.highlights, scene.views.size()))
+    if (&scene.views[h.view] == &view && h.status == HighlightStatus::kAccepted) accepted.push_back(h);
+  return accepted;
+}
+
 void WritePicture(const Arguments& arguments, const Project& project, const std::vector<Candidate>& candidates,
                   const TriangleMesh& reference, const std::vector<Region>& regions) {
   const View& view = project.scene.views[MostTellingView(project.scene, reference, regions.front().mask)];
-  const std::filesystem::path photograph = arguments.overlays.empty()
-                                               ? PathForImage(project.paths.images, view.name, "")
-                                               : PathForImage(arguments.overlays, view.name, ".png");
+  cv::Mat photograph;
+  ReadImage(PathForImage(project.paths.images, view.name, ""), photograph);
+  if (!arguments.highlights.empty())
+    photograph = DrawHighlights(photograph, AcceptedIn(arguments, project.scene, view));
   std::vector<PictureColumn> columns;
   for (const Candidate& c : candidates)
     columns.push_back({&c == &candidates.back() ? "after" : "before", &c.mesh, c.comparison.reference_normal_deg});
@@ -141,7 +151,9 @@ void AddCompareCommand(CLI::App& app, CommandLine& line) {
   auto* picture = command->add_option("--picture", arguments->picture,
                                       "PNG to draw: photograph, meshes, errors of their normals; for --project");
   picture->needs(project);
-  command->add_option("--overlays", arguments->overlays, "Folder highlights/ of a run, for the picture's photograph")
+  command
+      ->add_option("--highlights", arguments->highlights,
+                   "stages/highlights.json of a run, to draw into the photograph")
       ->needs(picture);
   command->add_option("--region", arguments->region,
                       "Also measure where this attribute of the reference's vertices is positive");
