@@ -1,5 +1,6 @@
 #include "constraints/contact.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +29,21 @@ double Incidence(const Contact& contact, const Light& light) {
   return std::acos(std::clamp(-contact.direction.dot(ContactNormal(contact, light)), -1.0, 1.0));
 }
 
+namespace {
+
+bool SetAxisRays(const View& view, const Highlight& highlight, Contact& contact) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(highlight.moments_px);
+  for (int k = 0; k < 2; ++k) {
+    const double length_px = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));
+    const auto ray = view.RayThrough(highlight.px + length_px * axes.eigenvectors().col(k));
+    if (!ray) return false;
+    contact.axis_rays[k] = *ray;
+  }
+  return true;
+}
+
+}  // namespace
+
 std::vector<Contact> MakeContacts(const Scene& scene, const std::vector<Highlight>& highlights,
                                   const ContactOptions& options) {
   constexpr double kRadians = M_PI / 180;
@@ -48,6 +64,7 @@ std::vector<Contact> MakeContacts(const Scene& scene, const std::vector<Highligh
     contact.sigma_normal = options.sigma_normal_deg * kRadians;
     const double sigma_px = std::sqrt(std::max(0.0, 0.5 * highlight.covariance_px.trace()));
     contact.pixel_angle = sigma_px / MeanFocalLength(view.camera);
+    if (!SetAxisRays(view, highlight, contact)) continue;
     contacts.push_back(contact);
   }
   return contacts;

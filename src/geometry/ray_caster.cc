@@ -57,8 +57,8 @@ std::optional<RayHit> RayCaster::Intersect(const Eigen::Vector3d& origin, const 
   // Start next to the scene's unit sphere, so that a far camera does not cost float digits.
   const Eigen::Vector3d o = (origin - self.center) * self.scale;
   const double skip = std::max(t_min * self.scale, -o.dot(direction) - 1.0);
-  if (!std::isfinite(skip)) return std::nullopt;
   const Eigen::Vector3d start = o + skip * direction;
+  if (!start.allFinite() || !direction.allFinite()) return std::nullopt;
   RTCRayHit query;
   query.ray.org_x = static_cast<float>(start.x());
   query.ray.org_y = static_cast<float>(start.y());

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "core/check.h"
 #include "refine/chord_residual.h"
@@ -48,13 +49,23 @@ namespace {
 constexpr double kRadians = M_PI / 180;
 // Share of the squared angle between two normals that a chord may be off by because curvature changes along it.
 constexpr double kCurvatureChange = 0.1;
+// What of that is left once the current surface's own offset is taken off.
+constexpr double kCorrected = 0.3;
 // Above this many contacts the exact covariance gives way to its diagonal approximation.
 constexpr size_t kMaxExactCovariance = 4000;
 
 struct Chord {
   int a, b;  // b: contact, or point for point chords
   double sigma;
+  double offset;  // of the current surface, see ChordResidual
 };
+
+// What (m_a + m_b)/|m_a + m_b| · (s_b − s_a) is on the current surface; none where its normals are not to be relied on.
+std::optional<double> SurfaceOffset(const Eigen::Vector3d& s_a, const Eigen::Vector3d& m_a, const Eigen::Vector3d& s_b,
+                                    const Eigen::Vector3d& m_b) {
+  if (m_a.isZero() || m_b.isZero()) return std::nullopt;
+  return (m_a + m_b).normalized().dot(s_b - s_a);
+}
 
 double Median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -156,9 +167,11 @@ void Solver::BuildChords() {
   for (const auto& [i, j] : pairs) {
     const double length = (positions[i] - positions[j]).norm();
     const double angle2 = 2 * (1 - std::clamp(normals[i].dot(normals[j]), -1.0, 1.0));
-    const double model = kCurvatureChange * angle2;
+    const auto offset = SurfaceOffset(contacts_[i]->SurfacePosition(), contacts_[i]->surface_normal,
+                                      contacts_[j]->SurfacePosition(), contacts_[j]->surface_normal);
+    const double model = (offset ? kCorrected : 1.0) * kCurvatureChange * angle2;
     const double sigma = length * std::sqrt((variance[i] + variance[j]) / 4 * shared * shared + model * model);
-    chords_.push_back({i, j, std::max(sigma, 1e-5 * diagonal_)});
+    chords_.push_back({i, j, std::max(sigma, 1e-5 * diagonal_), offset.value_or(0)});
   }
   point_chords_.clear();
   if (points_.empty()) return;
@@ -168,14 +181,18 @@ void Solver::BuildChords() {
     for (int p : near_points[i]) {
       const double length = (positions[i] - points_[p].position).norm();
       const double angle2 = 2 * (1 - std::clamp(normals[i].dot(points_[p].normal), -1.0, 1.0));
-      const double direction = std::hypot(0.5 * options_.point_normal_sigma_deg * kRadians, kCurvatureChange * angle2);
-      point_chords_.push_back({static_cast<int>(i), p, std::hypot(length * direction, points_[p].sigma)});
+      const auto offset = SurfaceOffset(contacts_[i]->SurfacePosition(), contacts_[i]->surface_normal,
+                                        points_[p].surface_position, points_[p].normal);
+      const double model = (offset ? kCorrected : 1.0) * kCurvatureChange * angle2;
+      const double direction = std::hypot(0.5 * options_.point_normal_sigma_deg * kRadians, model);
+      point_chords_.push_back(
+          {static_cast<int>(i), p, std::hypot(length * direction, points_[p].sigma), offset.value_or(0)});
     }
 }
 
 double Solver::ChordResidualOf(const Chord& chord) const {
   const Contact &a = *contacts_[chord.a], &b = *contacts_[chord.b];
-  const ChordResidual residual{{a, lights_[a.light]}, {b, lights_[b.light]}, 1 / chord.sigma};
+  const ChordResidual residual{{a, lights_[a.light]}, {b, lights_[b.light]}, 1 / chord.sigma, chord.offset};
   double r;
   residual(&a.depth, &b.depth, lights_[a.light].vector.data(), lights_[b.light].vector.data(), &r);
   return r;
@@ -184,7 +201,7 @@ double Solver::ChordResidualOf(const Chord& chord) const {
 double Solver::PointChordResidualOf(const Chord& chord) const {
   const Contact& a = *contacts_[chord.a];
   const SurfacePoint& p = points_[chord.b];
-  const PointChordResidual residual{{a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma};
+  const PointChordResidual residual{{a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma, chord.offset};
   double r;
   residual(&a.depth, lights_[a.light].vector.data(), &r);
   return r;
@@ -199,7 +216,7 @@ void Solver::AddResiduals(ceres::Problem& problem) {
   }
   for (const Chord& chord : chords_) {
     Contact &a = *contacts_[chord.a], &b = *contacts_[chord.b];
-    auto* residual = new ChordResidual{{a, lights_[a.light]}, {b, lights_[b.light]}, 1 / chord.sigma};
+    auto* residual = new ChordResidual{{a, lights_[a.light]}, {b, lights_[b.light]}, 1 / chord.sigma, chord.offset};
     double *light_a = lights_[a.light].vector.data(), *light_b = lights_[b.light].vector.data();
     if (a.light == b.light)
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ChordResidual, 1, 1, 1, 3>(residual),
@@ -212,7 +229,7 @@ void Solver::AddResiduals(ceres::Problem& problem) {
     Contact& a = *contacts_[chord.a];
     const SurfacePoint& p = points_[chord.b];
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointChordResidual, 1, 1, 3>(
-                                 new PointChordResidual{{a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma}),
+                                 new PointChordResidual{{a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma, chord.offset}),
                              new ceres::CauchyLoss(2), &a.depth, lights_[a.light].vector.data());
   }
   for (Contact* c : contacts_) {

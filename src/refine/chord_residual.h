@@ -40,16 +40,19 @@ struct HalfVectorModel {
   }
 };
 
-// (n_i + n_j)/|n_i + n_j| · (x_j − x_i) / sigma: exact on a sphere, third order in the chord elsewhere (DESIGN 3.3).
+// ((n_i + n_j)/|n_i + n_j| · (x_j − x_i) − offset) / sigma: with no offset exact on a sphere, third order in the chord
+// elsewhere (DESIGN 3.3). `offset` is the same product on the current surface, which takes up how the curvature changes
+// between the two contacts: once surface and contacts agree, the residual is exact (a deferred correction).
 struct ChordResidual {
   HalfVectorModel a, b;
   double inverse_sigma;
+  double offset = 0;
 
   template <class T>
   bool operator()(const T* depth_a, const T* depth_b, const T* light_a, const T* light_b, T* residual) const {
     const Eigen::Matrix<T, 3, 1> x_a = a.Position(*depth_a), x_b = b.Position(*depth_b);
     const Eigen::Matrix<T, 3, 1> n = (a.Normal(x_a, light_a) + b.Normal(x_b, light_b)).normalized();
-    *residual = T(inverse_sigma) * n.dot(x_b - x_a);
+    *residual = T(inverse_sigma) * (n.dot(x_b - x_a) - T(offset));
     return true;
   }
   template <class T>
@@ -64,12 +67,13 @@ struct PointChordResidual {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
   double inverse_sigma;
+  double offset = 0;
 
   template <class T>
   bool operator()(const T* depth, const T* light, T* residual) const {
     const Eigen::Matrix<T, 3, 1> x = a.Position(*depth);
     const Eigen::Matrix<T, 3, 1> n = (a.Normal(x, light) + normal.cast<T>()).normalized();
-    *residual = T(inverse_sigma) * n.dot(point.cast<T>() - x);
+    *residual = T(inverse_sigma) * (n.dot(point.cast<T>() - x) - T(offset));
     return true;
   }
 };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
 
 #include "core/parallel.h"
 
@@ -41,18 +41,24 @@ void LevelSetOptions::Visit(OptionVisitor& v) {
 
 namespace {
 
-// Cauchy: weight of a squared residual in standard deviations.
-double RobustWeight(double squared) { return 1 / (1 + squared / 4); }
+// Weights of a squared residual in standard deviations. Contacts: Cauchy, they were judged in the bundle already.
+// Points: Geman and McClure, which lets go of the few that lie centimetres off.
+double ContactWeight(double squared) { return 1 / (1 + squared / 4); }
+double PointWeight(double squared) { return 1 / ((1 + squared / 9) * (1 + squared / 9)); }
 
 // Rows with the base weights, and which of them belong together when outliers are weighted down.
 struct Constraints {
   BandRows rows;
   std::vector<double> base_weight;
-  std::vector<std::pair<size_t, size_t>> groups;
+  struct Group {
+    size_t first, last;
+    bool is_point;
+  };
+  std::vector<Group> groups;
 
-  void EndGroup(size_t first) {
+  void EndGroup(size_t first, bool is_point) {
     for (size_t r = first; r < rows.size(); ++r) base_weight.push_back(rows.weight[r]);
-    groups.emplace_back(first, rows.size());
+    groups.push_back({first, rows.size(), is_point});
   }
 };
 
@@ -97,16 +103,16 @@ Constraints BuildConstraints(const Band& band, const std::vector<OrientedPoint>&
         ++summary.contacts_off_band;
         continue;
       }
-      c.EndGroup(first);
+      c.EndGroup(first, false);
       first = c.rows.size();
       AddValueRow(band, contact.position, w / std::pow(contact.sigma_position, 2), c.rows);
-      c.EndGroup(first);
+      c.EndGroup(first, false);
     }
   if (options.point_weight > 0)
     for (const SurfacePoint& point : points) {
       const size_t first = c.rows.size();
       if (AddValueRow(band, point.position, options.point_weight / std::pow(point.sigma, 2), c.rows))
-        c.EndGroup(first);
+        c.EndGroup(first, true);
       else
         ++summary.points_off_band;
     }
@@ -169,14 +175,14 @@ LevelSet VariationalStep(const LevelSet& surface, const LevelSet& seed, double s
   Constraints constraints = BuildConstraints(band, contacts, points, options, report);
   std::vector<double> phi(band.phi().begin(), band.phi().end());
   for (int k = 0; k < options.reweightings; ++k) {
-    for (const auto& [first, last] : constraints.groups) {
+    for (const auto& [first, last, is_point] : constraints.groups) {
       double squared = 0;
       for (size_t r = first; r < last; ++r) {
         const double residual = constraints.rows.Dot(r, phi) - constraints.rows.target[r];
         squared += constraints.base_weight[r] * residual * residual;
       }
-      // The first solve trusts everything: the seed is no judge of what is an outlier.
-      const double weight = k == 0 ? 1 : RobustWeight(squared);
+      // The first solve trusts every contact: the seed is no judge of them, while the points have made it.
+      const double weight = is_point ? PointWeight(squared) : (k == 0 ? 1 : ContactWeight(squared));
       for (size_t r = first; r < last; ++r) constraints.rows.weight[r] = weight * constraints.base_weight[r];
     }
     system.SetRows(constraints.rows);

@@ -14,7 +14,7 @@
 namespace glint {
 
 struct LevelSetOptions {
-  double smoothness = 1;
+  double smoothness = 10;
   double normal_weight = 10;
   double seed_sigma_rel = 0.01;
   double seed_length_rel = 0.06;

@@ -5,8 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
+#include <optional>
+#include <tuple>
 
 #include "core/check.h"
+#include "geometry/components.h"
+#include "geometry/edge_topology.h"
 #include "geometry/ray_caster.h"
 #include "refine/confidence.h"
 #include "refine/normalized.h"
@@ -52,12 +57,37 @@ void RefineOptions::Visit(OptionVisitor& v) {
 namespace {
 
 constexpr double kRadians = M_PI / 180;
+// A highlight narrower than this share of what the surface would make of the usual lobe lies elsewhere.
+constexpr double kMinWidthShare = 0.45;
+// Nor does one that is wider by this factor: the surface is sharper there than the highlight says.
+constexpr double kMaxWidthShare = 4;
+// A highlight that was left out for its size comes back only when it fits clearly, so that it does not come and go.
+constexpr double kReturnMargin = 1.5;
+// Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
+constexpr double kMinPieceShare = 0.005;
 
 double Median(std::vector<double> values) {
   if (values.empty()) return 0;
   auto middle = values.begin() + values.size() / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+TriangleMesh WithoutCrumbs(const TriangleMesh& mesh) {
+  const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));
+  if (pieces.list.size() < 2) return mesh;
+  std::vector<double> area(pieces.list.size());
+  for (size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Eigen::Vector3i& face = mesh.faces[f];
+    const Eigen::Vector3d& a = mesh.vertices[face[0]];
+    area[pieces.of_face[f]] += 0.5 * (mesh.vertices[face[1]] - a).cross(mesh.vertices[face[2]] - a).norm();
+  }
+  const double total = std::accumulate(area.begin(), area.end(), 0.0);
+  TriangleMesh kept = mesh;
+  kept.faces.clear();
+  for (size_t f = 0; f < mesh.faces.size(); ++f)
+    if (area[pieces.of_face[f]] >= kMinPieceShare * total) kept.faces.push_back(mesh.faces[f]);
+  return WithoutUnusedVertices(kept);
 }
 
 // All of the state between iterations, in units of the object's diagonal.
@@ -74,6 +104,7 @@ class Refiner {
     if (options.use_highlights)
       for (const Contact& contact : MakeContacts(input.scene, input.highlights, options.contacts))
         contacts_.push_back(frame_.FromWorld(contact));
+    misfit_.assign(contacts_.size(), 0);
     MakePoints();
   }
 
@@ -94,7 +125,8 @@ class Refiner {
  private:
   void MakePoints();
   bool RunLevel(double voxel);
-  double UpdateContacts(IterationSummary& iteration);
+  double UpdateContacts(const LevelSet& field, IterationSummary& iteration);
+  void RejectMisfits(const LevelSet& field, const RayCaster& caster);
   void UpdatePoints(const LevelSet& field);
   std::vector<OrientedPoint> OrientedPoints() const;
   void Finish(RefineResult& result);
@@ -107,6 +139,7 @@ class Refiner {
   std::vector<Light> lights_;
   std::vector<bool> solve_lights_;
   std::vector<Contact> contacts_;
+  std::vector<uint8_t> misfit_;  // a contact: was left out for its size
   std::vector<SurfacePoint> points_;
   RefineSummary summary_;
 };
@@ -134,17 +167,25 @@ void Refiner::MakePoints() {
 }
 
 // Depths at which the rays meet the surface; returns how far the contacts moved (median).
-double Refiner::UpdateContacts(IterationSummary& iteration) {
+double Refiner::UpdateContacts(const LevelSet& field, IterationSummary& iteration) {
   const RayCaster caster(surface_);
+  // A seed's normals are not to be relied on; those of a surface that has met the contacts once are.
+  const bool reliable = !summary_.iterations.empty();
   for (Contact& contact : contacts_) {
     contact.accepted = false;
+    contact.reason = HighlightStatus::kInconsistent;
     const auto hit = caster.Intersect(contact.origin, contact.direction);
-    if (!hit) continue;
+    if (!hit) {
+      contact.reason = HighlightStatus::kOffSurface;
+      continue;
+    }
     contact.prior_depth = hit->t;
+    if (reliable) contact.surface_normal = field.Gradient(hit->position).normalized();
     if (contact.depth == 0) contact.depth = hit->t;
     contact.accepted = Incidence(contact, lights_[contact.light]) < options_.contacts.max_incidence_deg * kRadians;
     iteration.contacts_on_surface += contact.accepted;
   }
+  RejectMisfits(field, caster);
   std::vector<double> before, motion;
   for (const Contact& contact : contacts_) before.push_back(contact.depth);
   iteration.bundle = SolveBundle(points_, 1.0, solve_lights_, options_.bundle, contacts_, lights_);
@@ -153,11 +194,43 @@ double Refiner::UpdateContacts(IterationSummary& iteration) {
   return Median(motion);
 }
 
+// A highlight is as large as the surface's curvature lets it be: across its axes the normal turns away from the half
+// vector by about the same angle everywhere, the width of the lobe. A much smaller one comes from a sharper place (a rim,
+// a handle) that the seed does not have, and its ray meets the surface behind.
+void Refiner::RejectMisfits(const LevelSet& field, const RayCaster& caster) {
+  std::vector<double> least(contacts_.size(), -1), most(contacts_.size()), widths;
+  for (size_t i = 0; i < contacts_.size(); ++i) {
+    const Contact& c = contacts_[i];
+    if (!c.accepted) continue;
+    const auto turn = [&](const Eigen::Vector3d& ray) -> std::optional<Eigen::Vector3d> {
+      const auto hit = caster.Intersect(c.origin, ray);
+      if (!hit) return std::nullopt;
+      return field.Gradient(hit->position).normalized() -
+             HalfVector(lights_[c.light], c.cam_from_world, hit->position);
+    };
+    const auto center = turn(c.direction), a = turn(c.axis_rays[0]), b = turn(c.axis_rays[1]);
+    if (!center || !a || !b) continue;
+    const double width_a = (*a - *center).norm(), width_b = (*b - *center).norm();
+    std::tie(least[i], most[i]) = std::minmax({width_a, width_b});
+    widths.push_back(std::sqrt(width_a * width_b));
+  }
+  const double width = Median(widths);
+  for (size_t i = 0; i < contacts_.size(); ++i) {
+    if (least[i] < 0) continue;
+    const double margin = misfit_[i] ? kReturnMargin : 1;
+    misfit_[i] = least[i] < margin * kMinWidthShare * width || margin * most[i] > kMaxWidthShare * width;
+    if (!misfit_[i]) continue;
+    contacts_[i].accepted = false;
+    contacts_[i].reason = HighlightStatus::kWrongSize;
+  }
+}
+
 void Refiner::UpdatePoints(const LevelSet& field) {
   for (SurfacePoint& p : points_) {
     const Eigen::Vector3d g = field.Gradient(p.position);
     // Off the band there is no normal; a zero one ties the point to no contact.
     p.normal = g.norm() > 0.5 ? Eigen::Vector3d(g.normalized()) : Eigen::Vector3d::Zero();
+    p.surface_position = p.position - field.Value(p.position) * p.normal;
   }
 }
 
@@ -198,10 +271,10 @@ bool Refiner::RunLevel(double voxel) {
     iteration.voxel_rel = voxel;
     const LevelSet field = MeshToLevelSet(surface_, voxel, sdf);
     UpdatePoints(field);
-    iteration.contact_motion_voxels = UpdateContacts(iteration) / voxel;
+    iteration.contact_motion_voxels = UpdateContacts(field, iteration) / voxel;
     const LevelSet stepped = VariationalStep(field, seed_field, SurfaceArea(surface_), OrientedPoints(), points_,
                                              options_.level_set, &iteration.step);
-    surface_ = ExtractMesh(stepped);
+    surface_ = WithoutCrumbs(ExtractMesh(stepped));
     iteration.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     summary_.iterations.push_back(iteration);
     progress_.Advance();
@@ -223,7 +296,7 @@ void Refiner::Finish(RefineResult& result) {
     if (contact.accepted)
       result.contacts.push_back(frame_.ToWorld(contact));
     else
-      result.highlights[contact.highlight].status = HighlightStatus::kInconsistent;
+      result.highlights[contact.highlight].status = contact.reason;
   }
   for (size_t k = 0; k < lights_.size(); ++k) result.lights.push_back(frame_.ToWorld(lights_[k]));
   summary_.num_contacts = static_cast<int>(result.contacts.size());

@@ -76,7 +76,7 @@ inline EllipsoidContacts MakeEllipsoidContacts(const Ellipsoid& shape, const std
   std::normal_distribution<double> normal;
   for (int i = 0; i < num_points; ++i) {
     const Eigen::Vector3d n = Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
-    scene.points.push_back({shape.PointWithNormal(n), n, 0.002});
+    scene.points.push_back({shape.PointWithNormal(n), n, 0.002, shape.PointWithNormal(n)});
   }
   return scene;
 }
