@@ -18,7 +18,7 @@ struct DetectOptions {
   double min_contrast = 0.2;   // of the local body's brightness
   double max_size_rel = 0.25;  // fraction of the image's diagonal
   double max_tint_deg = 24;    // degrees in linear RGB
-  double max_profile_error = 0.2;
+  double max_profile_error = 0.11;
   double saturation = 0.93;  // fraction of sensor white
   double position_floor_px = 0.05;
 
