@@ -201,7 +201,7 @@ void Flow::WriteResults(const RefineResult& refined) {
   for (const std::string& warning : refined.summary.warnings) terminal_.Warn(warning);
   WriteHighlightPictures(refined.highlights);
   WriteLights(out_.Lights(), refined.lights);
-  WriteVdb(out_.LevelSetFile(), refined.level_set);
+  if (!refined.level_set.empty()) WriteVdb(out_.LevelSetFile(), refined.level_set);
   WriteMesh(out_.Mesh(), refined.mesh);
   summary_.refine = refined.summary;
   summary_.lights = refined.lights;

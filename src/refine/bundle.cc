@@ -228,8 +228,8 @@ void Solver::AddResiduals(ceres::Problem& problem) {
   for (const Chord& chord : point_chords_) {
     Contact& a = *contacts_[chord.a];
     const SurfacePoint& p = points_[chord.b];
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointChordResidual, 1, 1, 3>(
-                                 new PointChordResidual{{a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma, chord.offset}),
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointChordResidual, 1, 1, 3>(new PointChordResidual{
+                                 {a, lights_[a.light]}, p.position, p.normal, 1 / chord.sigma, chord.offset}),
                              new ceres::CauchyLoss(2), &a.depth, lights_[a.light].vector.data());
   }
   for (Contact* c : contacts_) {

@@ -16,7 +16,7 @@ namespace glint {
 struct SurfacePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  double sigma = 0;  // standard deviation of the position
+  double sigma = 0;                                            // standard deviation of the position
   Eigen::Vector3d surface_position = Eigen::Vector3d::Zero();  // foot point on the current surface
 };
 

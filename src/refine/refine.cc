@@ -195,8 +195,8 @@ double Refiner::UpdateContacts(const LevelSet& field, IterationSummary& iteratio
 }
 
 // A highlight is as large as the surface's curvature lets it be: across its axes the normal turns away from the half
-// vector by about the same angle everywhere, the width of the lobe. A much smaller one comes from a sharper place (a rim,
-// a handle) that the seed does not have, and its ray meets the surface behind.
+// vector by about the same angle everywhere, the width of the lobe. A much smaller one comes from a sharper place (a
+// rim, a handle) that the seed does not have, and its ray meets the surface behind.
 void Refiner::RejectMisfits(const LevelSet& field, const RayCaster& caster) {
   std::vector<double> least(contacts_.size(), -1), most(contacts_.size()), widths;
   for (size_t i = 0; i < contacts_.size(); ++i) {
@@ -205,8 +205,7 @@ void Refiner::RejectMisfits(const LevelSet& field, const RayCaster& caster) {
     const auto turn = [&](const Eigen::Vector3d& ray) -> std::optional<Eigen::Vector3d> {
       const auto hit = caster.Intersect(c.origin, ray);
       if (!hit) return std::nullopt;
-      return field.Gradient(hit->position).normalized() -
-             HalfVector(lights_[c.light], c.cam_from_world, hit->position);
+      return field.Gradient(hit->position).normalized() - HalfVector(lights_[c.light], c.cam_from_world, hit->position);
     };
     const auto center = turn(c.direction), a = turn(c.axis_rays[0]), b = turn(c.axis_rays[1]);
     if (!center || !a || !b) continue;
@@ -290,7 +289,12 @@ void Refiner::Finish(RefineResult& result) {
   result.mesh = frame_.ToWorld(surface_);
   SdfOptions sdf;
   sdf.half_width_voxels = options_.half_width_voxels;
-  result.level_set = MeshToLevelSet(result.mesh, options_.voxel_rel / frame_.scale, sdf);
+  const double voxel_world = options_.voxel_rel / frame_.scale;
+  if (voxel_world >= kSmallestVoxelWorld)
+    result.level_set = MeshToLevelSet(result.mesh, voxel_world, sdf);
+  else
+    summary_.warnings.push_back(fmt::format(
+        "no signed distance field: OpenVDB can not hold voxels of {:g}; scale the project up", voxel_world));
   result.highlights = input_.highlights;
   for (const Contact& contact : contacts_) {
     if (contact.accepted)

@@ -62,7 +62,7 @@ struct RefineSummary {
 };
 
 struct RefineResult {
-  LevelSet level_set;  // world units
+  LevelSet level_set;  // world units; empty (and said) where its voxels would be too small for OpenVDB
   TriangleMesh mesh;   // with normals, confidence, sigma_position_rel and sigma_normal_deg
   std::vector<Light> lights;
   std::vector<Highlight> highlights;

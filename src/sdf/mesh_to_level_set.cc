@@ -1,41 +1,18 @@
 #include "sdf/mesh_to_level_set.h"
 
 #include <fmt/format.h>
-#include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
-#include "core/parallel.h"
-#include "geometry/edge_topology.h"
-#include "geometry/pseudo_normals.h"
-#include "sdf/band.h"
-#include "sdf/exact_side.h"
+#include "sdf/band_maker.h"
 #include "sdf/level_set_impl.h"
 #include "sdf/memory_budget.h"
 #include "sdf/prepared_mesh.h"
 #include "sdf/sign_evidence.h"
-#include "sdf/winding_signs.h"
 
 namespace glint {
-
-namespace {
-
-// Pseudo-normals have told the sides of the active voxels; the others follow.
-class SpreadSigner : public internal::LeafSigner {
- public:
-  internal::LeafBits Inside(const Eigen::Vector3i&, const internal::TileDistances& distances) const override {
-    internal::LeafBits known, inside{};
-    for (int x = 0; x < 8; ++x) {
-      known[x] = distances.active[x];
-      for (int i = 0; i < 64; ++i) inside[x] |= uint64_t{std::signbit(distances.distance[x << 6 | i])} << i;
-    }
-    return internal::SpreadSides(known, inside);
-  }
-};
-
-}  // namespace
 
 void SdfOptions::Visit(OptionVisitor& v) {
   v.Field(
@@ -68,8 +45,6 @@ openvdb::math::Transform::Ptr ToVdb(const Eigen::Affine3d& world_from_index, dou
   return openvdb::math::Transform::createLinearTransform(matrix);
 }
 
-constexpr double kSmallestVoxel = 1.5e-5;
-
 // The edge length of the voxels; throws InputError unless the transform is a similarity.
 double VoxelSize(const Eigen::Affine3d& world_from_index) {
   const Eigen::Matrix3d m = world_from_index.linear();
@@ -77,71 +52,16 @@ double VoxelSize(const Eigen::Affine3d& world_from_index) {
   if (!world_from_index.matrix().allFinite() || !(size > 0) || !(m.transpose() * m / (size * size)).isIdentity(1e-9))
     throw InputError("", "grid transform", "expected a rotation, a positive uniform scale and a translation");
   // OpenVDB takes transforms of a smaller determinant for singular.
-  if (size < kSmallestVoxel)
+  if (size < kSmallestVoxelWorld)
     throw InputError("", "voxel size",
                      fmt::format("expected at least {} (the smallest that OpenVDB can hold), found {}; "
                                  "scale the mesh up",
-                                 kSmallestVoxel, size));
+                                 kSmallestVoxelWorld, size));
   return size;
 }
 
-class BandMaker {
- public:
-  BandMaker(const internal::PreparedMesh& prepared, double half_width, double voxel_size)
-      : prepared_(prepared),
-        band_{half_width, voxel_size},
-        background_(static_cast<float>(half_width * voxel_size)),
-        bins_(internal::BinTriangles(prepared.mesh, half_width)) {}
-
-  openvdb::FloatGrid::Ptr Unsigned() const { return MakeGrid(band_); }
-
-  openvdb::FloatGrid::Ptr ByPseudoNormals() const {
-    const PseudoNormals normals = ComputePseudoNormals(prepared_.mesh, BuildEdgeTopology(prepared_.mesh));
-    const internal::PseudoNormalSide exact(prepared_.mesh, normals);
-    const SpreadSigner signer;
-    internal::BandOptions band = band_;
-    band.exact = &exact;
-    band.signer = &signer;
-    const openvdb::FloatGrid::Ptr grid = MakeGrid(band);
-    FillTiles(*grid);
-    return grid;
-  }
-
-  openvdb::FloatGrid::Ptr ByWinding() const {
-    const internal::WindingSigner signer(prepared_.mesh, prepared_.balanced, band_.half_width_voxels);
-    internal::BandOptions band = band_;
-    band.signer = &signer;
-    const openvdb::FloatGrid::Ptr grid = MakeGrid(band);
-    if (prepared_.balanced) {
-      FillTiles(*grid);
-    } else {
-      signer.FillTiles(grid->tree());
-    }
-    return grid;
-  }
-
- private:
-  openvdb::FloatGrid::Ptr MakeGrid(const internal::BandOptions& band) const {
-    std::vector<std::unique_ptr<internal::Leaf>> leaves = internal::ComputeLeaves(prepared_.mesh, bins_, band);
-    openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(background_);
-    for (auto& leaf : leaves)
-      if (leaf) grid->tree().addLeaf(leaf.release());
-    return grid;
-  }
-
-  // Tiles take the sides of the leaves beside them.
-  void FillTiles(openvdb::FloatGrid& grid) const {
-    openvdb::tools::signedFloodFillWithValues(grid.tree(), background_, -background_, true, 1, 1);
-  }
-
-  const internal::PreparedMesh& prepared_;
-  internal::BandOptions band_;
-  float background_;
-  internal::TileBins bins_;
-};
-
 // Makes the band by the method asked for; "auto" tries pseudo-normals and looks at what comes out.
-openvdb::FloatGrid::Ptr MakeBand(const BandMaker& maker, const internal::PreparedMesh& prepared,
+openvdb::FloatGrid::Ptr MakeBand(const internal::BandMaker& maker, const internal::PreparedMesh& prepared,
                                  const std::string& sign, float voxel_size, SdfSummary& summary) {
   summary.sign = sign;
   summary.reason = "as asked";
@@ -177,7 +97,7 @@ LevelSet MeshToLevelSet(const TriangleMesh& mesh, const Eigen::Affine3d& world_f
   if (!violations.empty()) throw InputError("", "signed distance options", violations.front());
   const internal::PreparedMesh prepared = internal::PrepareMesh(mesh, world_from_index.inverse());
   CheckGridFits(prepared.mesh, options.half_width_voxels, options.max_memory_gb);
-  const BandMaker maker(prepared, options.half_width_voxels, voxel_size);
+  const internal::BandMaker maker(prepared, options.half_width_voxels, voxel_size);
   SdfSummary story;
   story.turned = prepared.turned;
   story.degenerate_faces = prepared.collapsed_faces;

@@ -11,6 +11,9 @@
 
 namespace glint {
 
+// OpenVDB refuses transforms that shrink volumes by more than about 3e-15.
+inline constexpr double kSmallestVoxelWorld = 1.5e-5;
+
 struct SdfOptions {
   double half_width_voxels = 3;
   // "pseudonormal": exact for closed, consistently oriented meshes without self-intersections. "winding": generalised
