@@ -23,11 +23,21 @@ class LeafSigner {
   virtual LeafBits Inside(const Eigen::Vector3i& origin, const TileDistances& distances) const = 0;
 };
 
+// Changes distances once they are known, from those to the mesh to those to the surface that it stands for.
+class DistanceCorrection {
+ public:
+  virtual ~DistanceCorrection() = default;
+  // For each active voxel: its signed distance in voxels.
+  virtual void Correct(const Eigen::Vector3i& origin, TileDistances& distances) const = 0;
+};
+
 struct BandOptions {
   double half_width_voxels;
   double voxel_size;
   const ExactSide* exact = nullptr;    // null: distances without signs
   const LeafSigner* signer = nullptr;  // null: everything is outside
+  const DistanceCorrection* correction = nullptr;
+  double correction_reach = 0;  // voxels by which it may change a distance
 };
 
 // One leaf for each tile that has an active voxel, in the order of the tiles; null for the others. Values in world

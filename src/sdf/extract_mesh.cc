@@ -1,13 +1,13 @@
 #include "sdf/extract_mesh.h"
 
 #include <fmt/format.h>
-#include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <cmath>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "sdf/field_sampler.h"
 #include "sdf/level_set_impl.h"
 
 namespace glint {
@@ -15,36 +15,21 @@ namespace glint {
 namespace {
 
 using openvdb::Vec3d;
-using Accessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>;
-
-double Sample(const Accessor& accessor, const Vec3d& x) { return openvdb::tools::BoxSampler::sample(accessor, x); }
-
-Vec3d Gradient(const Accessor& accessor, const Vec3d& x, double step) {
-  Vec3d gradient;
-  for (int k = 0; k < 3; ++k) {
-    Vec3d offset(0.0);
-    offset[k] = step;
-    gradient[k] = (Sample(accessor, x + offset) - Sample(accessor, x - offset)) / (2 * step);
-  }
-  return gradient;
-}
-
 // Newton steps onto the iso-surface along the gradient; stays within a voxel of where it began.
-Vec3d Project(const Accessor& accessor, const Vec3d& start, double iso) {
+Vec3d Project(internal::FieldSampler& field, const Vec3d& start, double iso) {
   Vec3d x = start, best = start;
-  double best_residual = std::abs(Sample(accessor, x) - iso);
+  internal::FieldSample sample = field(x);
+  double best_residual = std::abs(sample.value - iso);
   for (int step = 0; step < 5 && best_residual > 0; ++step) {
-    const Vec3d gradient = Gradient(accessor, x, 0.5);
-    const double squared = gradient.lengthSqr();
+    const double squared = sample.gradient.lengthSqr();
     if (!(squared > 0)) break;
-    const double residual = Sample(accessor, x) - iso;
-    x -= gradient * (residual / squared);
+    x -= sample.gradient * ((sample.value - iso) / squared);
     if ((x - start).lengthSqr() > 1) break;
-    const double new_residual = std::abs(Sample(accessor, x) - iso);
-    if (new_residual < best_residual) {
-      best_residual = new_residual;
-      best = x;
-    }
+    sample = field(x);
+    const double residual = std::abs(sample.value - iso);
+    if (residual < best_residual) best = x;
+    if (residual > 0.1 * best_residual) break;  // no longer converging
+    best_residual = residual;
   }
   return best;
 }
@@ -93,17 +78,15 @@ TriangleMesh ExtractMesh(const LevelSet& level_set, double iso_world) {
   std::vector<openvdb::Vec4I> quads;
   openvdb::tools::volumeToMesh(*centered, points, triangles, quads, iso_world, 0.0, true);
 
-  const Accessor shared(grid.tree());
   std::vector<Vec3d> in_index(points.size());
   mesh.vertices.resize(points.size());
   mesh.normals.resize(points.size());
   ParallelChunks(points.size(), 4096, [&](size_t begin, size_t end) {
-    const Accessor accessor(shared);
+    internal::FieldSampler field(grid.tree());
     for (size_t v = begin; v < end; ++v) {
-      const Vec3d start = Vec3d(points[v]) + center.asVec3d();
-      in_index[v] = Project(accessor, start, iso_world);
+      in_index[v] = Project(field, Vec3d(points[v]) + center.asVec3d(), iso_world);
       mesh.vertices[v] = FromVdb(grid.indexToWorld(in_index[v]));
-      const Vec3d gradient = grid.transform().baseMap()->applyIJT(Gradient(accessor, in_index[v], 1));
+      const Vec3d gradient = grid.transform().baseMap()->applyIJT(field(in_index[v]).gradient);
       mesh.normals[v] = FromVdb(gradient).normalized();
     }
   });

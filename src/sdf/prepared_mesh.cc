@@ -9,7 +9,7 @@
 
 namespace glint::internal {
 
-PreparedMesh PrepareMesh(const TriangleMesh& mesh, const Eigen::Affine3d& index_from_world) {
+PreparedMesh PrepareMesh(const TriangleMesh& mesh, const Eigen::Affine3d& index_from_world, bool may_turn) {
   CleanMesh clean = Clean(mesh);
   if (clean.mesh.faces.empty())
     throw InputError("", "mesh", "expected at least one triangle with three different corners, found none");
@@ -17,7 +17,7 @@ PreparedMesh PrepareMesh(const TriangleMesh& mesh, const Eigen::Affine3d& index_
   TriangleMesh& m = out.mesh;
   ParallelFor(m.vertices.size(), 16384, [&](size_t v) { m.vertices[v] = index_from_world * m.vertices[v]; });
   out.balanced = EdgesBalanced(m);
-  if (SignedVolume(m) < 0) {
+  if (may_turn && SignedVolume(m) < 0) {
     // An open mesh is turned only if its holes are small; of a sheet nobody can tell.
     bool turn = out.balanced;
     if (!turn) {

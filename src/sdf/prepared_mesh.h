@@ -18,8 +18,9 @@ struct PreparedMesh {
   bool turned = false;    // it was inside out
 };
 
-// Throws InputError for meshes that cannot be used (geometry/clean_mesh.h).
-PreparedMesh PrepareMesh(const TriangleMesh& mesh, const Eigen::Affine3d& index_from_world);
+// Throws InputError for meshes that cannot be used (geometry/clean_mesh.h). Meshes that are inside out are turned, if
+// they may be.
+PreparedMesh PrepareMesh(const TriangleMesh& mesh, const Eigen::Affine3d& index_from_world, bool may_turn = true);
 
 // The edges that keep `mesh` from being balanced, in words.
 std::string DescribeEdges(const TriangleMesh& mesh);

@@ -322,12 +322,14 @@ size_t KeepOnly(size_t count, size_t stride, TileScratch& scratch) {
 }
 
 // Distances of the 16 voxels of a block to its candidates. Sides that are not certain are left to `exact`.
+template <bool kWantsClosest>
 void ComputeBlock(const Tile& tile, const int first[3], const float center[3], size_t num_candidates,
                   const ExactSide& exact, TileScratch& scratch, TileDistances& out) {
   const D d;
   const size_t lanes = hn::Lanes(d);
   scratch.squared.resize(num_candidates);
   alignas(64) float distance[16];
+  alignas(64) uint32_t closest[16];
   alignas(64) uint8_t inside[16], doubtful[16];
   const float reach = tile.half_width + 2 * kTileRadius;
   const float tolerance = 4e-6f * reach, margin_value = tolerance;
@@ -337,16 +339,22 @@ void ComputeBlock(const Tile& tile, const int first[3], const float center[3], s
     const V py = hn::Add(hn::Load(d, kLanes.y + chunk), hn::Set(d, center[1]));
     const V pz = hn::Add(hn::Load(d, kLanes.z + chunk), hn::Set(d, center[2]));
     V outer = infinity, inner = infinity;  // the closest that see the voxel outside, and inside
+    const hn::RebindToUnsigned<D> du;
+    [[maybe_unused]] auto closest_index = hn::Zero(du);
     for (size_t i = 0; i < num_candidates; ++i) {
       const uint32_t t = scratch.candidates[i];
       const OfOneTriangle frame{scratch.frames[t / kGroup * kNumCoefficients].lane + t % kGroup};
       V side;
       const V squared = SquaredDistance(frame, px, py, pz, side);
       const V margin = hn::Max(frame[kMargin], margin_least);
+      if constexpr (kWantsClosest)
+        closest_index = hn::IfThenElse(hn::RebindMask(du, hn::Lt(squared, hn::Min(outer, inner))),
+                                       hn::Set(du, static_cast<uint32_t>(i)), closest_index);
       outer = hn::IfThenElse(hn::Ge(side, hn::Neg(margin)), hn::Min(outer, squared), outer);
       inner = hn::IfThenElse(hn::Le(side, margin), hn::Min(inner, squared), inner);
       hn::Store(squared, d, scratch.squared[i].lane + chunk);
     }
+    if constexpr (kWantsClosest) hn::Store(closest_index, du, closest + chunk);
     const V outer_distance = hn::Sqrt(outer), inner_distance = hn::Sqrt(inner);
     hn::Store(hn::Min(outer_distance, inner_distance), d, distance + chunk);
     const auto is_inside = hn::Lt(inner, outer);
@@ -373,6 +381,7 @@ void ComputeBlock(const Tile& tile, const int first[3], const float center[3], s
     out.distance[x << 6 | y << 3 | z] = tile.is_signed && negative ? -distance[l] : distance[l];
     out.active[x] |= uint64_t{1} << (y << 3 | z);
     out.any_active = true;
+    if constexpr (kWantsClosest) out.closest[x << 6 | y << 3 | z] = scratch.tile_ids[scratch.candidates[closest[l]]];
   }
 }
 
@@ -407,7 +416,11 @@ void ComputeTileImpl(const Tile& tile, const ExactSide& exact, TileScratch& scra
     if (count == 0) continue;
     ++scratch.counters.blocks;
     scratch.counters.candidates += count;
-    ComputeBlock(tile, first, center, count, exact, scratch, out);
+    if (tile.wants_closest) {
+      ComputeBlock<true>(tile, first, center, count, exact, scratch, out);
+    } else {
+      ComputeBlock<false>(tile, first, center, count, exact, scratch, out);
+    }
   }
 }
 

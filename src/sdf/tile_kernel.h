@@ -28,6 +28,7 @@ struct Tile {
   Eigen::Vector3i origin;  // its first voxel
   float half_width;        // voxels
   bool is_signed;
+  bool wants_closest = false;  // fill in TileDistances::closest
 };
 
 // Decides the voxels that single precision cannot.
@@ -42,6 +43,7 @@ struct TileDistances {
   alignas(64) float distance[kTileVoxels];  // voxels, negative inside; only where active
   uint64_t active[8];                       // bit y << 3 | z of word x: |distance| < half width
   bool any_active;
+  uint32_t closest[kTileVoxels];  // the closest triangle, to single precision; only where active and asked for
 };
 
 struct TileCounters {
