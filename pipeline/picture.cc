@@ -17,6 +17,7 @@ namespace {
 constexpr int kSamples = 2;       // a side: rays a pixel are its square
 constexpr int kPanelWidth = 400;  // px
 constexpr int kTitleHeight = 26;  // px
+constexpr int kScaleHeight = 40;  // px, the colours and their numbers
 constexpr double kStripesPerTurn = 28;
 const cv::Scalar kInk(60, 60, 60);
 

@@ -21,8 +21,9 @@ jobs() {
   echo $((cores < limit ? cores : limit))
 }
 
+# build_release [TARGET...]: everything if no target is named.
 build_release() {
   say "Building (preset release)"
-  cmake --preset release "$@"
-  cmake --build --preset release --parallel "$(jobs)"
+  cmake --preset release
+  cmake --build --preset release --parallel "$(jobs)" ${*:+--target "$@"}
 }
