@@ -100,7 +100,7 @@ TEST_F(Commands, FieldsAndMeshesThatAreNone) {
   EXPECT_EQ(RunGlint({"sdf", Path("none.ply"), "-o", Path("x.vdb")}).exit_code, 2);
   EXPECT_EQ(RunGlint({"mesh", Path("noise.vdb"), "-o", Path("x.ply")}).exit_code, 2);
   EXPECT_EQ(RunGlint({"sdf", Path("cube.off"), "-o", Path("x.vdb"), "--band", "-1"}).exit_code, 2);
-  const ProgramResult huge = RunGlint({"sdf", Path("cube.off"), "-o", Path("x.vdb"), "--resolution", "200000"});
+  const ProgramResult huge = RunGlint({"sdf", Path("cube.off"), "-o", Path("x.vdb"), "--resolution", "40000"});
   EXPECT_EQ(huge.exit_code, 2);
   EXPECT_THAT(huge.err, HasSubstr("GB"));
   EXPECT_FALSE(std::filesystem::exists(Path("x.vdb")));
