@@ -14,14 +14,14 @@
 namespace glint {
 
 struct LevelSetOptions {
-  double smoothness = 10;
+  double smoothness = 30;
   double normal_weight = 10;
   double seed_sigma_rel = 0.01;
   double seed_length_rel = 0.06;
   double point_weight = 1;
   double highlight_weight = 1;
   int reweightings = 2;
-  int max_iterations = 100;
+  int max_iterations = 300;
   double tolerance = 1e-3;
   void Visit(OptionVisitor& v);
 };
