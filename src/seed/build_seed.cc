@@ -43,11 +43,11 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
 }
 
 // Fairs ever more stiffly until the surface does not pass through itself.
-FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments, FairOptions options,
-                            SeedSummary& summary) {
+FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
+                            const std::vector<Eigen::Vector3d>& eyes, FairOptions options, SeedSummary& summary) {
   FairResult result;
   for (int attempt = 0; attempt < kMaxStiffenings; ++attempt) {
-    result = FairThroughPoints(mesh, attachments, options);
+    result = FairThroughPoints(mesh, attachments, eyes, options);
     if (SelfIntersections(result.mesh, 1).empty()) return result;
     options.smoothing *= 1.6;
   }
@@ -123,13 +123,15 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     s.warnings.push_back(fmt::format("only {} sparse points on the object: no seed", s.num_object_points));
     return out;
   }
+  std::vector<Eigen::Vector3d> eyes;
+  for (const View& view : scene.views) eyes.push_back(view.Center());
   SparseSurface surface;
   FairResult fair;
   for (int round = 0; round < kRounds; ++round) {
     surface = MakeSparseSurface(scene, reliability, choice, options.surface);
     progress.ThrowIfCancelled();
     if (surface.mesh.empty()) break;
-    fair = FairWithoutFolds(surface.mesh, Attachments(scene, surface, reliability), options.smooth, s);
+    fair = FairWithoutFolds(surface.mesh, Attachments(scene, surface, reliability), eyes, options.smooth, s);
     if (round + 1 == kRounds || !DropDoubted(surface, fair, reliability, choice)) break;
   }
   CountPoints(reliability, choice, s);

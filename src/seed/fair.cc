@@ -7,7 +7,11 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/parallel.h"
 #include "geometry/closest_point.h"
+#include "geometry/edge_topology.h"
+#include "geometry/pseudo_normals.h"
+#include "geometry/ray_caster.h"
 #include "seed/remesh.h"
 
 namespace glint {
@@ -17,15 +21,19 @@ using Sparse = Eigen::SparseMatrix<double>;
 using Triplet = Eigen::Triplet<double>;
 
 constexpr double kMinSigmaRel = 5e-4;  // of the diagonal: no sparse point is surer than this
-constexpr double kTrustedRange = 4;    // usual distances: farther attachments lose most of their weight
+constexpr double kMinCot = 0.05, kMaxCot = 3;
+constexpr double kInertia = 1e-3;    // of the pull on what is not seen: keeps the system well posed
+constexpr double kRestLength = 1;    // spacings over which the natural curvature is even
+constexpr double kStiffStart = 2.5;  // times the smoothing asked for
+constexpr double kTrustedRange = 4;  // usual distances: farther attachments lose most of their weight
 
 double Median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
   return values[values.size() / 2];
 }
 
-// The Laplacian of a mesh of nearly equilateral triangles, where the cotangent weights are all 1/√3. Unlike those of
-// the triangles as they come out, it cannot turn negative or blow up on a sliver.
+// Cotangent weights, within what nearly equilateral triangles have: a sliver must neither turn them negative nor
+// dominate.
 struct Laplacian {
   Sparse stiffness;  // symmetric, rows sum to zero
   double area = 0;   // a vertex
@@ -34,11 +42,13 @@ struct Laplacian {
 Laplacian EvenLaplacian(const TriangleMesh& mesh) {
   const int n = static_cast<int>(mesh.vertices.size());
   Laplacian out{Sparse(n, n), SurfaceArea(mesh) / n};
-  const double w = 0.5 / std::sqrt(3.0);  // every edge comes up in two faces
   std::vector<Triplet> entries;
   for (const Eigen::Vector3i& f : mesh.faces)
     for (int k = 0; k < 3; ++k) {
-      const int i = f[k], j = f[(k + 1) % 3];
+      const int i = f[(k + 1) % 3], j = f[(k + 2) % 3];
+      const Eigen::Vector3d a = mesh.vertices[i] - mesh.vertices[f[k]], b = mesh.vertices[j] - mesh.vertices[f[k]];
+      const double area2 = a.cross(b).norm();
+      const double w = 0.5 * std::clamp(area2 > 0 ? a.dot(b) / area2 : kMaxCot, kMinCot, kMaxCot);
       entries.insert(entries.end(), {{i, j, -w}, {j, i, -w}, {i, i, w}, {j, j, w}});
     }
   out.stiffness.setFromTriplets(entries.begin(), entries.end());
@@ -56,6 +66,12 @@ double EffectiveCount(const std::vector<Attachment>& attachments, double area) {
   }
   std::sort(voxels.begin(), voxels.end());
   return static_cast<double>(std::unique(voxels.begin(), voxels.end()) - voxels.begin());
+}
+
+std::vector<Eigen::Vector3d> VertexNormals(const TriangleMesh& mesh) {
+  std::vector<Eigen::Vector3d> normals = ComputePseudoNormals(mesh, BuildEdgeTopology(mesh)).vertex;
+  for (Eigen::Vector3d& n : normals) n.normalize();
+  return normals;
 }
 
 struct Foot {
@@ -95,6 +111,24 @@ Sparse ThinPlate(const Laplacian& laplacian, double lambda) {
   return Sparse(laplacian.stiffness * laplacian.stiffness) * (lambda / laplacian.area);
 }
 
+// What L x is to be: the mean curvature normal of the surface as it stands, with the curvature diffused over `length`.
+// A plate that is bent by nature keeps the bend of its surroundings where no point holds it; a flat one would flatten.
+Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const Laplacian& laplacian, double length) {
+  const int n = static_cast<int>(mesh.vertices.size());
+  Eigen::MatrixX3d x(n, 3);
+  for (int v = 0; v < n; ++v) x.row(v) = mesh.vertices[v];
+  const Eigen::MatrixX3d bend = laplacian.stiffness * x;
+  const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
+  Eigen::VectorXd curvature(n);
+  for (int v = 0; v < n; ++v) curvature[v] = bend.row(v).dot(normals[v]);
+  Sparse diffusion = laplacian.stiffness * (length * length / laplacian.area);
+  for (int v = 0; v < n; ++v) diffusion.coeffRef(v, v) += 1;
+  const Eigen::VectorXd smooth = Eigen::SimplicialLDLT<Sparse>(diffusion).solve(curvature);
+  Eigen::MatrixX3d rest(n, 3);
+  for (int v = 0; v < n; ++v) rest.row(v) = smooth[v] * normals[v];
+  return rest;
+}
+
 struct Springs {
   std::vector<Triplet> entries;
   Eigen::MatrixX3d right;
@@ -114,11 +148,33 @@ struct Springs {
   }
 };
 
-// Softer from round to round: four times stiffer at first, as the options say at the end.
+// Holds what no camera sees where the sparse surface is; everything else hardly at all, where it stands.
+void HoldUnseen(const TriangleMesh& mesh, const ClosestPointQuery& raw, const std::vector<Eigen::Vector3d>& eyes,
+                double weight, Springs& springs) {
+  const double margin = 1e-4 * Diagonal(mesh);
+  const RayCaster caster(mesh);
+  const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
+  std::vector<uint8_t> seen(mesh.vertices.size(), 0);
+  ParallelFor(seen.size(), 256, [&](size_t v) {
+    const Eigen::Vector3d& x = mesh.vertices[v];
+    for (const Eigen::Vector3d& eye : eyes)
+      if (normals[v].dot(eye - x) > 0 && !caster.Occluded(x, eye, margin)) {
+        seen[v] = 1;
+        break;
+      }
+  });
+  for (size_t v = 0; v < seen.size(); ++v) {
+    const Eigen::Vector3d& x = mesh.vertices[v];
+    springs.Hold(static_cast<int>(v), x, kInertia * weight);
+    if (!seen[v]) springs.Hold(static_cast<int>(v), raw.Find(x)->point, weight);
+  }
+}
+
+// Softer from round to round, as the options say at the end.
 double SmoothingOf(const FairOptions& options, int round) {
   const int soft_rounds = 2;  // at the end
   const double left = std::max(0, options.rounds - soft_rounds - round);
-  return options.smoothing * std::pow(4.0, left / std::max(1, options.rounds - soft_rounds));
+  return options.smoothing * std::pow(kStiffStart, left / std::max(1, options.rounds - soft_rounds));
 }
 
 }  // namespace
@@ -136,16 +192,19 @@ void FairOptions::Visit(OptionVisitor& v) {
            .min = 0.01,
            .max = 10},
           smoothing);
-  v.Field(
-      {.name = "stay", .help = "Pull of every round to where it began, against that of the points", .min = 0, .max = 1},
-      stay);
+  v.Field({.name = "stay",
+           .help = "Pull of the sparse surface on what no camera sees, against that of the points",
+           .min = 0,
+           .max = 1},
+          stay);
   v.Field({.name = "rounds", .help = "Solves of the fairing", .min = 1, .max = 50}, rounds);
 }
 
 FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                             const FairOptions& options) {
+                             const std::vector<Eigen::Vector3d>& eyes, const FairOptions& options) {
   GLINT_CHECK(!mesh.empty());
   const double diagonal = Diagonal(mesh);
+  const ClosestPointQuery raw(mesh);
   FairResult out{RemeshEvenly(mesh, options.edge_rel * diagonal), std::vector<double>(attachments.size(), 1.0)};
   if (attachments.empty()) return out;
   const double min_sigma = kMinSigmaRel * diagonal;
@@ -164,17 +223,20 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     const double lambda = std::pow(SmoothingOf(options, round), 4) * spring / density;
     const int n = static_cast<int>(out.mesh.vertices.size());
     Springs springs(n);
-    for (int v = 0; v < n; ++v) springs.Hold(v, out.mesh.vertices[v], options.stay * spring * density * laplacian.area);
+    HoldUnseen(out.mesh, raw, eyes, options.stay * spring * density * laplacian.area, springs);
     for (size_t i = 0; i < feet.size(); ++i) springs.Attach(feet[i], attachments[i].position, weights[i]);
     Sparse system(n, n);
     system.setFromTriplets(springs.entries.begin(), springs.entries.end());
     system += ThinPlate(laplacian, lambda);
+    if (round > 0)
+      springs.right += lambda / laplacian.area *
+                       (laplacian.stiffness * RestCurvature(out.mesh, laplacian, kRestLength / std::sqrt(density)));
     const Eigen::SimplicialLDLT<Sparse> solver(system);
     if (solver.info() != Eigen::Success) return out;  // singular: what stands so far is closed and sound
     const Eigen::MatrixX3d x = solver.solve(springs.right);
     if (!x.allFinite()) return out;
     for (int v = 0; v < n; ++v) out.mesh.vertices[v] = x.row(v);
-    out.mesh = RemeshEvenly(out.mesh, options.edge_rel * diagonal, 1);
+    if (round + 1 < options.rounds) out.mesh = RemeshEvenly(out.mesh, options.edge_rel * diagonal, 1);
   }
   out.trust = Trust(attachments, FeetOf(attachments, out.mesh), min_sigma);
   return out;

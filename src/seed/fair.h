@@ -11,8 +11,8 @@ namespace glint {
 
 struct FairOptions {
   double edge_rel = 0.015;
-  double smoothing = 0.2;
-  double stay = 0.0002;
+  double smoothing = 0.18;
+  double stay = 0.005;
   int rounds = 6;
 
   void Visit(OptionVisitor& v);
@@ -34,13 +34,14 @@ struct FairResult {
 };
 
 // Minimises (sparse Cholesky; remeshed evenly, attached again and robustly weighted each round)
-//   λ ∫‖Δx‖² + Σᵢ wᵢ ‖x(attached point of i) − pᵢ‖² + stay · (such springs all over, to where the round began)
-// with λ set so that the surface bends over `smoothing` times the spacing of the attachments. The thin-plate energy is
-// the linearised Willmore energy, whose closed minimisers are spheres: between points a convex body bulges as it
-// should, where flat facets cut 2–3 % off. The rounds go from stiff to soft, so that points which disagree with their
-// neighbourhood lose their weight before the surface could bend to them. The mesh must be closed and manifold; topology
-// is kept.
+//   λ ∫‖Δx − r‖² + Σᵢ wᵢ ‖x(attached point of i) − pᵢ‖² + stay · (such springs, to the sparse surface, where no eye
+//   sees it)
+// with λ set so that the surface bends over `smoothing` times the spacing of the attachments, and r the curvature
+// normal of the round before with its curvature evened out: a plate bent by nature, which spheres (and, between points,
+// any body of slowly changing curvature) cost nothing; flat facets cut 2–3 % off a convex body. The rounds go from
+// stiff to soft, so that points which disagree with their neighbourhood lose their weight before the surface could bend
+// to them. The mesh must be closed and manifold; topology is kept.
 FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                             const FairOptions& options);
+                             const std::vector<Eigen::Vector3d>& eyes, const FairOptions& options);
 
 }  // namespace glint

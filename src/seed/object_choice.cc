@@ -67,7 +67,8 @@ std::vector<int> PieceOfVertex(const Tetrahedra& tetrahedra, const CellComponent
   std::vector<std::map<int, int>> count(tetrahedra.points.size());
   for (size_t c = 0; c < tetrahedra.cells.size(); ++c)
     if (pieces.component[c] >= 0)
-      for (int v : tetrahedra.cells[c]) ++count[v][pieces.component[c]];
+      for (int v : tetrahedra.cells[c])
+        if (v >= 0) ++count[v][pieces.component[c]];
   std::vector<int> piece(tetrahedra.points.size(), -1);
   for (size_t v = 0; v < piece.size(); ++v) {
     int best = 0;
@@ -105,9 +106,12 @@ void AdoptLoosePoints(const std::vector<Eigen::Vector3d>& points, const std::vec
 std::vector<uint8_t> AboveGround(const Tetrahedra& tetrahedra, const std::vector<uint8_t>& labels,
                                  const std::optional<GroundPlane>& ground, double min_height) {
   std::vector<uint8_t> above = labels;
-  if (!ground) return above;
-  for (int c = 0; c < static_cast<int>(labels.size()); ++c)
-    if (labels[c] && ground->plane.signedDistance(tetrahedra.Centroid(c)) < min_height) above[c] = 0;
+  for (int c = 0; c < static_cast<int>(labels.size()); ++c) {
+    if (!labels[c]) continue;
+    // A cut may leave an infinite cell inside; it has neither corners nor a centroid.
+    if (tetrahedra.IsInfinite(c) || (ground && ground->plane.signedDistance(tetrahedra.Centroid(c)) < min_height))
+      above[c] = 0;
+  }
   return above;
 }
 

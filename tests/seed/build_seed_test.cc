@@ -1,0 +1,207 @@
+#include "seed/build_seed.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "colmap/model.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "geometry/closest_point.h"
+#include "geometry/mesh_checks.h"
+#include "seed/scene_layout.h"
+#include "simulated_scene.h"
+
+namespace glint {
+namespace {
+
+double MeanRadiusError(const TriangleMesh& mesh) {
+  double sum = 0;
+  size_t count = 0;
+  for (const Eigen::Vector3d& v : mesh.vertices)
+    if (v.z() > 0) {  // below, nothing is seen
+      sum += std::abs(v.norm() - 1);
+      ++count;
+    }
+  return sum / static_cast<double>(count);
+}
+
+void ExpectSound(const TriangleMesh& mesh, long genus) {
+  const MeshChecks checks = CheckMeshSoundness(mesh);
+  EXPECT_TRUE(checks.closed);
+  EXPECT_TRUE(checks.oriented);
+  EXPECT_TRUE(checks.manifold);
+  EXPECT_FALSE(checks.inside_out);
+  EXPECT_EQ(checks.num_components, 1u);
+  EXPECT_EQ(checks.genus, genus);
+}
+
+class SphereSeed : public testing::TestWithParam<int> {};
+
+TEST_P(SphereSeed, IsClosedAndSmoothIsNearer) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, GetParam());
+  SeedSummary summary;
+  const SeedResult seed = BuildSeed(scene, {}, &summary);
+  ASSERT_FALSE(seed.mesh.empty()) << summary.BriefReport();
+  ExpectSound(seed.mesh, 0);
+  ExpectSound(seed.smooth, 0);
+  EXPECT_FALSE(summary.ground_found);
+  EXPECT_GE(summary.num_object_points, scene.points.size() * 95 / 100);
+  EXPECT_LT(MeanRadiusError(seed.smooth), GetParam() < 50 ? 0.1 : (GetParam() < 200 ? 0.02 : 0.005));
+  EXPECT_TRUE(seed.region.contains(BoundingBox(seed.smooth)));
+}
+
+INSTANTIATE_TEST_SUITE_P(PointsOnTheObject, SphereSeed, testing::Values(40, 100, 400, 2000));
+
+TEST(BuildSeed, LeavesTheTableOut) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, 300);
+  const size_t on_object = scene.points.size();
+  AddGround(scene, -1, 4, 30);
+  SeedSummary summary;
+  const SeedResult seed = BuildSeed(scene, {}, &summary);
+  EXPECT_TRUE(summary.ground_found);
+  EXPECT_EQ(summary.object_chosen_by, "ground and focus");
+  EXPECT_NEAR(static_cast<double>(summary.num_object_points), static_cast<double>(on_object), 3);
+  for (size_t i = on_object; i < scene.points.size(); ++i) EXPECT_FALSE(seed.point_used[i]);
+  ASSERT_FALSE(seed.mesh.empty());
+  ExpectSound(seed.mesh, 0);
+  ExpectSound(seed.smooth, 0);
+  EXPECT_LT(MeanRadiusError(seed.smooth), 0.01);
+}
+
+TEST(BuildSeed, BoxOverridesTheChoice) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, 300);
+  const size_t on_object = scene.points.size();
+  AddGround(scene, -1, 4, 30);
+  SeedOptions options;
+  options.object.box = {0, 0, 0.2, 2.2, 2.2, 2.2};
+  SeedSummary summary;
+  const SeedResult seed = BuildSeed(scene, options, &summary);
+  EXPECT_EQ(summary.object_chosen_by, "box");
+  for (size_t i = on_object; i < scene.points.size(); ++i) EXPECT_FALSE(seed.point_used[i]);
+  ExpectSound(seed.mesh, 0);
+  options.object.box = {0, 0, 0, 1, 1};
+  EXPECT_THROW(BuildSeed(scene, options), InputError);
+  options.object.box = {0, 0, 0, 1, -1, 1};
+  EXPECT_THROW(BuildSeed(scene, options), InputError);
+}
+
+TEST(BuildSeed, PointsBehindTheSurfaceDoNotDentIt) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, 300);
+  const size_t sound = scene.points.size();
+  // Where a distant light's highlight triangulates: half a radius behind the surface, in few neighbouring views.
+  for (int i = 0; i < 20; ++i) {
+    ScenePoint point{Eigen::Vector3d::Zero(), {255, 255, 255}, 1.0, {}};
+    const Eigen::Vector3d n = (scene.views[i].Center().normalized() + Eigen::Vector3d(0.3, 0.1, 0.6)).normalized();
+    point.position = 0.5 * n;
+    for (int k = 0; k < 3; ++k) {
+      const View& view = scene.views[(i + 12 * k) % 36];
+      point.observations.push_back(
+          {static_cast<uint32_t>((i + 12 * k) % 36), view.Project(point.position)->cast<float>()});
+    }
+    scene.points.push_back(point);
+  }
+  const SeedResult seed = BuildSeed(scene);
+  size_t used = 0;
+  for (size_t i = sound; i < scene.points.size(); ++i) used += seed.point_used[i];
+  EXPECT_LE(used, 2u);
+  EXPECT_LT(MeanRadiusError(seed.smooth), 0.01);
+}
+
+TEST(BuildSeed, ATorusKeepsItsHole) {
+  Scene scene = DomeScene(48, 6);
+  const double big = 1, small = 0.35;
+  for (int i = 0; i < 36; ++i)
+    for (int j = 0; j < 14; ++j) {
+      const double a = 2 * M_PI * (i + 0.5 * (j % 2)) / 36, b = 2 * M_PI * j / 14;
+      const Eigen::Vector3d n(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
+      const Eigen::Vector3d x = big * Eigen::Vector3d(std::cos(a), std::sin(a), 0) + small * n;
+      AddPoint(scene, x, [&](const Eigen::Vector3d& eye) {
+        const Eigen::Vector3d d = (eye - x).normalized();
+        if (n.dot(d) < 0.1) return false;
+        for (double t = 0.05; t < 3; t += 0.02) {  // its own other side
+          const Eigen::Vector3d y = x + t * d;
+          if (std::hypot(std::hypot(y.x(), y.y()) - big, y.z()) < small - 1e-3) return false;
+        }
+        return true;
+      });
+    }
+  AddGround(scene, -0.6, 4, 30);
+  const SeedResult seed = BuildSeed(scene);
+  ASSERT_FALSE(seed.mesh.empty());
+  ExpectSound(seed.mesh, 1);
+  ExpectSound(seed.smooth, 1);
+}
+
+TEST(BuildSeed, IsTheSameForAnyNumberOfThreads) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, 200);
+  AddGround(scene, -1, 4, 20);
+  SeedResult results[2];
+  for (int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    results[threads - 1] = BuildSeed(scene);
+  }
+  EXPECT_EQ(results[0].mesh.vertices, results[1].mesh.vertices);
+  EXPECT_EQ(results[0].mesh.faces, results[1].mesh.faces);
+  EXPECT_EQ(results[0].smooth.vertices, results[1].smooth.vertices);
+  EXPECT_EQ(results[0].smooth.faces, results[1].smooth.faces);
+}
+
+TEST(BuildSeed, SaysWhyThereIsNone) {
+  SeedSummary summary;
+  EXPECT_TRUE(BuildSeed(Scene(), {}, &summary).mesh.empty());
+  EXPECT_FALSE(summary.warnings.empty());
+
+  Scene few = DomeScene(10, 5);
+  AddPoint(few, {0, 0, 0}, [](const Eigen::Vector3d&) { return true; });
+  EXPECT_TRUE(BuildSeed(few, {}, &summary).mesh.empty());
+  EXPECT_FALSE(summary.warnings.empty());
+
+  Scene flat = DomeScene(10, 5);
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j)
+      AddPoint(flat, {0.2 * i - 0.4, 0.2 * j - 0.4, 0}, [](const Eigen::Vector3d&) { return true; });
+  EXPECT_TRUE(BuildSeed(flat, {}, &summary).mesh.empty());
+  EXPECT_FALSE(summary.warnings.empty());
+
+  Scene same = DomeScene(10, 5);
+  for (int i = 0; i < 50; ++i) AddPoint(same, {0.1, 0.1, 0.1}, [](const Eigen::Vector3d&) { return true; });
+  EXPECT_TRUE(BuildSeed(same, {}, &summary).mesh.empty());
+}
+
+TEST(SceneLayout, FindsFocusAndGround) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, 300);
+  AddGround(scene, -1, 4, 30);
+  const std::vector<uint8_t> use(scene.points.size(), 1);
+  const Focus focus = FindFocus(scene, use);
+  EXPECT_LT(focus.center.norm(), 0.1);
+  EXPECT_NEAR(focus.distance, 5, 0.1);
+  const auto ground = FindGround(scene, use, focus);
+  ASSERT_TRUE(ground.has_value());
+  EXPECT_NEAR(ground->plane.normal().z(), 1, 1e-9);
+  EXPECT_NEAR(ground->plane.signedDistance(Eigen::Vector3d::Zero()), 1, 1e-6);
+}
+
+TEST(BuildSeed, IsolatesTheVaseFromItsTable) {
+  const std::filesystem::path folder = std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/vase/project/sparse/0";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "needs ../shared/data/vase";
+  SeedSummary summary;
+  const SeedResult seed = BuildSeed(MakeScene(ReadModel(folder)), {}, &summary);
+  ASSERT_FALSE(seed.smooth.empty());
+  ExpectSound(seed.mesh, 0);
+  ExpectSound(seed.smooth, 0);
+  EXPECT_TRUE(summary.ground_found);
+  // The vase is 0.824 × 0.824 × 1.2215 in a frame 0.57363 times the model's.
+  const double diagonal = std::sqrt(2 * 0.824 * 0.824 + 1.2215 * 1.2215) / 0.57363;
+  EXPECT_NEAR(Diagonal(seed.smooth), diagonal, 0.25 * diagonal);
+  EXPECT_LT(summary.smooth_residual_rel, 0.002);
+}
+
+}  // namespace
+}  // namespace glint
