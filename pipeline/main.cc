@@ -44,6 +44,7 @@ void DeclareCommands(CLI::App& app, glint::CommandLine& line) {
   glint::AddDetectCommand(app, line);
   glint::AddSdfCommand(app, line);
   glint::AddMeshCommand(app, line);
+  glint::AddRenderCommand(app, line);
   glint::AddCompareCommand(app, line);
   glint::AddInspectCommand(app, line);
   glint::AddConfigCommand(app, line);

@@ -26,6 +26,7 @@ void AddConfigCommand(CLI::App& app, CommandLine& line);
 void AddDetectCommand(CLI::App& app, CommandLine& line);
 void AddInspectCommand(CLI::App& app, CommandLine& line);
 void AddMeshCommand(CLI::App& app, CommandLine& line);
+void AddRenderCommand(CLI::App& app, CommandLine& line);
 void AddRunCommand(CLI::App& app, CommandLine& line);
 void AddSdfCommand(CLI::App& app, CommandLine& line);
 void AddSynthCommand(CLI::App& app, CommandLine& line);

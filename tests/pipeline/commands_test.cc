@@ -44,7 +44,7 @@ TEST_F(Commands, VersionAndHelp) {
   EXPECT_THAT(version.out, HasSubstr("glint " GLINT_VERSION));
   const ProgramResult help = RunGlint({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "synth", "detect", "sdf", "mesh", "compare", "inspect", "config"})
+  for (const char* command : {"run", "synth", "detect", "sdf", "mesh", "render", "compare", "inspect", "config"})
     EXPECT_THAT(help.out, HasSubstr(command));
 }
 
@@ -92,6 +92,24 @@ TEST_F(Commands, MeshToFieldAndBack) {
   const auto json = nlohmann::json::parse(compared.out);
   const double diagonal = json["reference_diagonal"];
   EXPECT_NEAR(json["candidates"][0]["accuracy_rel"]["mean"].get<double>() * diagonal, 0.1, 0.003);
+}
+
+TEST_F(Commands, PicturesOfFieldsAndMeshes) {
+  Write("cube.off", kCube);
+  ASSERT_EQ(RunGlint({"sdf", Path("cube.off"), "-o", Path("cube.vdb"), "--resolution", "30"}).exit_code, 0);
+  for (const char* file : {"cube.vdb", "cube.off"}) {
+    const ProgramResult result =
+        RunGlint({"render", Path(file), "-o", Path("a.png"), "--width", "64", "--height", "48"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(ReadText(Path("a.png")).substr(1, 3), "PNG");
+  }
+  EXPECT_EQ(RunGlint({"render", Path("cube.vdb"), "-o", Path("b.png"), "--width", "64", "--iso", "0.05"}).exit_code, 0);
+  EXPECT_EQ(RunGlint({"render", Path("cube.vdb"), "-o", Path("c.png"), "--iso", "0.5"}).exit_code, 2);
+  EXPECT_EQ(RunGlint({"render", Path("cube.vdb"), "-o", Path("c.png"), "--iso", "nan"}).exit_code, 2);
+  EXPECT_EQ(RunGlint({"render", Path("cube.vdb"), "-o", Path("c.png"), "--direction", "0", "0", "0"}).exit_code, 2);
+  EXPECT_EQ(RunGlint({"render", Path("cube.vdb"), "-o", Path("c.jpg")}).exit_code, 2);
+  EXPECT_EQ(RunGlint({"render", Path("none.vdb"), "-o", Path("c.png")}).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(Path("c.png")));
 }
 
 TEST_F(Commands, FieldsAndMeshesThatAreNone) {
