@@ -7,6 +7,7 @@
 
 #include "core/options.h"
 #include "highlights/detect.h"
+#include "highlights/find_lights.h"
 #include "highlights/gate.h"
 #include "pipeline/given_mesh.h"
 #include "refine/refine.h"
@@ -26,6 +27,7 @@ struct Config {
   SeedOptions seed;
   GivenMeshOptions given_mesh;
   DetectOptions detect;
+  FindLightsOptions lights;
   GateOptions gate;
   RefineOptions refine;
   OutputOptions output;

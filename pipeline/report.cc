@@ -21,6 +21,26 @@ Json ToJson(const std::vector<Light>& lights) {
   return json;
 }
 
+Json ToJson(const std::vector<FoundLight>& lights) {
+  Json json = Json::array();
+  for (const FoundLight& found : lights) {
+    Json one = ToJson(found.light);
+    one["support"] = found.support;
+    one["determined"] = found.determined;
+    if (!found.why.empty()) one["why"] = found.why;
+    json.push_back(one);
+  }
+  return json;
+}
+
+Json ToJson(const FindLightsSummary& find) {
+  return {{"candidates", find.candidates},
+          {"candidates_that_move", find.not_paint},
+          {"normal_sigma_deg", find.normal_sigma_deg},
+          {"outlier_share", find.outlier_share},
+          {"lights", ToJson(find.lights)}};
+}
+
 Json ByStatus(const std::array<size_t, kNumHighlightStatuses>& counts) {
   Json json = Json::object();
   for (int s = 0; s < kNumHighlightStatuses; ++s)
@@ -96,7 +116,9 @@ std::string ReportJson(const RunSummary& summary) {
   json["highlights"] = {{"candidates", summary.num_candidates},
                         {"gate", ToJson(summary.gate)},
                         {"final_by_status", ByStatus(summary.highlights_by_status)}};
-  json["lights"] = {{"given", ToJson(summary.lights_given)}, {"refined", ToJson(summary.lights)}};
+  json["lights"] = {{"given", ToJson(summary.lights_given)},
+                    {"found", ToJson(summary.find_lights)},
+                    {"refined", ToJson(summary.lights)}};
   json["refine"] = ToJson(summary.refine);
   json["mesh"] = {{"vertices", summary.num_vertices}, {"faces", summary.num_faces}};
   double total = 0;

@@ -45,7 +45,8 @@ class Flow {
     if (config_.refine.use_highlights) {
       Stage(RunStage::kDetect, [&] { Detect(); });
       highlights = ReadHighlights(out_.Stages() / "candidates.json", scene_.views.size());
-      if (lights_.empty()) GiveUpWithoutLights(highlights);
+      Stage(RunStage::kLights, [&] { FindLightsIfUnknown(seed, highlights); });
+      TakeLights(highlights);
       Stage(RunStage::kGate, [&] { Gate(seed, highlights); });
       highlights = ReadHighlights(out_.Stages() / "highlights.json", scene_.views.size());
       RequireAccepted(highlights);
@@ -64,10 +65,12 @@ class Flow {
   void ReadProject();
   void MakeSeed();
   void Detect();
+  void FindLightsIfUnknown(const TriangleMesh& seed, const std::vector<Highlight>& candidates);
+  void TakeLights(const std::vector<Highlight>& candidates);
   void Gate(const TriangleMesh& seed, std::vector<Highlight> highlights);
   [[noreturn]] void GiveUp(const std::vector<Highlight>& highlights, const std::string& why);
-  [[noreturn]] void GiveUpWithoutLights(const std::vector<Highlight>& candidates);
   void RequireAccepted(const std::vector<Highlight>& highlights);
+  void TakeRefined(const RefineResult& refined, size_t k);
   void WriteResults(const RefineResult& refined);
   void WriteHighlightPictures(const std::vector<Highlight>& highlights);
   void Report(const std::string& outcome);
@@ -106,6 +109,7 @@ class Flow {
   Scene scene_;
   std::unique_ptr<ProjectImages> images_;
   std::vector<Light> lights_;
+  std::vector<FoundLight> found_;  // the same lights first
 };
 
 void Flow::Prepare() {
@@ -158,6 +162,35 @@ void Flow::Detect() {
   WriteHighlights(out_.Stages() / "candidates.json", DetectInAllViews(scene_, *images_, config_.detect, terminal_));
 }
 
+void Flow::FindLightsIfUnknown(const TriangleMesh& seed, const std::vector<Highlight>& candidates) {
+  if (!lights_.empty()) {
+    WriteLights(out_.Stages() / "lights.json", lights_);
+    return;
+  }
+  WriteFoundLights(out_.Stages() / "lights.json", FindLights(scene_, *images_, seed, config_.gate, config_.lights,
+                                                             candidates, &summary_.find_lights, terminal_));
+  terminal_.Finish();
+  terminal_.Info(summary_.find_lights.BriefReport());
+}
+
+// The lights given, or those that were found.
+void Flow::TakeLights(const std::vector<Highlight>& candidates) {
+  if (lights_.empty()) {
+    found_ = ReadFoundLights(out_.Stages() / "lights.json");
+    for (const FoundLight& found : found_)
+      if (found.determined) lights_.push_back(found.light);
+  } else {
+    for (const Light& light : lights_) found_.emplace_back().light = light;
+  }
+  summary_.lights = found_;
+  if (!lights_.empty()) return;
+  if (candidates.empty()) GiveUp(candidates, "no highlights found in any image");
+  std::string why =
+      fmt::format("{} candidate highlights determine no light; give the lights with --lights FILE", candidates.size());
+  for (const FoundLight& found : found_) why += fmt::format("; of one, {}", found.why);
+  GiveUp(candidates, why);
+}
+
 void Flow::Gate(const TriangleMesh& seed, std::vector<Highlight> highlights) {
   GateHighlights(scene_, *images_, seed, lights_, config_.gate, highlights, &summary_.gate, terminal_);
   WriteHighlights(out_.Stages() / "highlights.json", highlights);
@@ -170,16 +203,7 @@ void Flow::RequireAccepted(const std::vector<Highlight>& highlights) {
                                       [](const Highlight& h) { return h.status == HighlightStatus::kAccepted; });
   if (highlights.empty()) GiveUp(highlights, "no highlights found in any image");
   if (accepted == 0)
-    GiveUp(highlights, fmt::format("none of the {} candidates is a highlight of the given lights", highlights.size()));
-}
-
-void Flow::GiveUpWithoutLights(const std::vector<Highlight>& candidates) {
-  GiveUp(
-      candidates,
-      candidates.empty()
-          ? "no highlights found in any image"
-          : fmt::format("the lights are not known: give them with --lights FILE ({} candidate highlights were found)",
-                        candidates.size()));
+    GiveUp(highlights, fmt::format("none of the {} candidates is a highlight of the lights", highlights.size()));
 }
 
 // What was found so far is written, for the user to see why there is no result.
@@ -197,14 +221,27 @@ void Flow::WriteHighlightPictures(const std::vector<Highlight>& highlights) {
   terminal_.Finish();
 }
 
+// What the bundle says of a light replaces what the votes did; one that was not solved for stays as it was given.
+void Flow::TakeRefined(const RefineResult& refined, size_t k) {
+  FoundLight& found = found_[k];
+  found.light = refined.lights[k];
+  if (refined.summary.iterations.empty()) return;
+  const BundleLightUpdate& update = refined.summary.iterations.back().bundle.lights[k];
+  found.support = update.contacts;
+  if (update.sigma <= 0) return;
+  found.light.sigma = update.sigma * (found.light.type == LightType::kPoint ? summary_.diagonal_world : 1);
+  found.covariance *= 0;
+}
+
 void Flow::WriteResults(const RefineResult& refined) {
   for (const std::string& warning : refined.summary.warnings) terminal_.Warn(warning);
   WriteHighlightPictures(refined.highlights);
-  WriteLights(out_.Lights(), refined.lights);
+  for (size_t k = 0; k < refined.lights.size(); ++k) TakeRefined(refined, k);
+  WriteFoundLights(out_.Lights(), found_);
   if (!refined.level_set.empty()) WriteVdb(out_.LevelSetFile(), refined.level_set);
   WriteMesh(out_.Mesh(), refined.mesh);
   summary_.refine = refined.summary;
-  summary_.lights = refined.lights;
+  summary_.lights = found_;
   summary_.num_vertices = refined.mesh.vertices.size();
   summary_.num_faces = refined.mesh.faces.size();
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "highlights/find_lights.h"
 #include "highlights/gate.h"
 #include "light/light.h"
 #include "pipeline/config.h"
@@ -14,8 +15,8 @@
 namespace glint {
 
 // The stages whose results are kept in the workspace, in their order; a run can go on from any of them.
-enum class RunStage { kSeed, kDetect, kGate, kRefine };
-inline constexpr std::array<std::string_view, 4> kRunStageNames = {"seed", "detect", "gate", "refine"};
+enum class RunStage { kSeed, kDetect, kLights, kGate, kRefine };
+inline constexpr std::array<std::string_view, 5> kRunStageNames = {"seed", "detect", "lights", "gate", "refine"};
 
 struct RunArguments {
   std::filesystem::path project;
@@ -49,9 +50,11 @@ struct RunSummary {
   std::vector<std::string> warnings;
   std::string seed_report;
   size_t num_candidates = 0;
+  FindLightsSummary find_lights;  // where none are given
   GateSummary gate;
   RefineSummary refine;
-  std::vector<Light> lights_given, lights;
+  std::vector<Light> lights_given;
+  std::vector<FoundLight> lights;  // that count, then those that are not determined
   std::array<size_t, kNumHighlightStatuses> highlights_by_status{};
   double diagonal_world = 0;  // of the seed
   size_t num_vertices = 0, num_faces = 0;

@@ -69,12 +69,12 @@ std::optional<double> MostKept(const Scene& scene, const ViewBrightness& brightn
                                const Light& light, const GateOptions& options, const Highlight& highlight,
                                const SurfaceSample& hit, const SurfaceSample& explaining) {
   const PaintTestOptions paint = {options.min_half_change_deg, options.min_other_views};
-  const auto at_hit = KeptBrightness(scene, brightness, surface, light, highlight, hit, paint);
+  const auto at_hit = KeptBrightness(scene, brightness, surface, &light, highlight, hit, paint);
   const View& view = scene.views[highlight.view];
   SurfaceSample moved = explaining;
   moved.position = view.Center() + *view.RayThrough(highlight.px) * (explaining.position - view.Center()).norm();
   if ((moved.position - hit.position).norm() < hit.error_world) return at_hit;
-  const auto at_explaining = KeptBrightness(scene, brightness, surface, light, highlight, moved, paint);
+  const auto at_explaining = KeptBrightness(scene, brightness, surface, &light, highlight, moved, paint);
   if (!at_hit || !at_explaining) return at_hit ? at_hit : at_explaining;
   return std::max(*at_hit, *at_explaining);
 }

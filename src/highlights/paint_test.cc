@@ -16,9 +16,12 @@ constexpr size_t kEnoughViews = 6;
 
 // Views in which the surface point can be seen and the light is mirrored elsewhere.
 std::vector<size_t> ViewsToCompare(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
-                                   const Light& light, const Highlight& highlight, const SurfaceSample& at,
+                                   const Light* light, const Highlight& highlight, const SurfaceSample& at,
                                    double min_half_change_deg) {
-  const Eigen::Vector3d half = HalfVector(light, scene.views[highlight.view].cam_from_world, at.position);
+  const View& own = scene.views[highlight.view];
+  const Eigen::Vector3d own_view = (own.Center() - at.position).normalized();
+  const Eigen::Vector3d own_half =
+      light ? HalfVector(*light, own.cam_from_world, at.position) : Eigen::Vector3d::Zero();
   const double min_cos = std::cos(kMaxViewAngleDeg * M_PI / 180);
   const double max_half_cos = std::cos(min_half_change_deg * M_PI / 180);
   std::vector<std::pair<double, size_t>> by_change;
@@ -27,7 +30,9 @@ std::vector<size_t> ViewsToCompare(const Scene& scene, const ViewBrightness& bri
     if (j == highlight.view || !brightness.Has(j)) continue;
     const Eigen::Vector3d center = view.Center();
     if (at.normal.dot((center - at.position).normalized()) < min_cos) continue;
-    const double half_cos = HalfVector(light, view.cam_from_world, at.position).dot(half);
+    const double view_cos = std::clamp(own_view.dot((center - at.position).normalized()), -1.0, 1.0);
+    const double half_cos = light ? HalfVector(*light, view.cam_from_world, at.position).dot(own_half)
+                                  : std::sqrt(0.5 * (1 + view_cos));  // the cosine of half the angle
     if (half_cos > max_half_cos) continue;
     const auto px = view.Project(at.position);
     if (!px || !view.Contains(*px) || surface.Occluded(at, center)) continue;
@@ -61,7 +66,7 @@ std::vector<Eigen::Vector3d> PlacesAlongRay(const Scene& scene, const std::vecto
 }  // namespace
 
 std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
-                                     const Light& light, const Highlight& highlight, const SurfaceSample& at,
+                                     const Light* light, const Highlight& highlight, const SurfaceSample& at,
                                      const PaintTestOptions& options) {
   const View& view = scene.views[highlight.view];
   const auto views = ViewsToCompare(scene, brightness, surface, light, highlight, at, options.min_half_change_deg);

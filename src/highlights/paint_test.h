@@ -19,9 +19,10 @@ struct PaintTestOptions {
 // How much of the highlight's brightness over its body the same surface point keeps in the median of the other views:
 // about 0 for a highlight, about 1 for paint; the largest such median over depths within the seed's error along the
 // ray, since at a wrong depth paint goes dark too. Compared are the views that see the point unoccluded and in which
-// `light`'s half vector differs by at least min_half_change_deg. nullopt: fewer than min_other_views of them.
+// `light`'s half vector differs by at least min_half_change_deg; with a null light half of the change of the viewing
+// direction stands for it, as with a light that stands still. nullopt: fewer than min_other_views of them.
 std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
-                                     const Light& light, const Highlight& highlight, const SurfaceSample& at,
+                                     const Light* light, const Highlight& highlight, const SurfaceSample& at,
                                      const PaintTestOptions& options);
 
 }  // namespace glint

@@ -83,10 +83,11 @@ std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& ori
     for (int k = 0; k < count; ++k) {
       const double a = 2 * M_PI * (k + radius) / count;
       const Eigen::Vector3d offset = radius * spread_world * (std::cos(a) * e1 + std::sin(a) * e2);
-      const auto sample = Hit(origin, (depth * direction + offset).normalized());
+      auto sample = Hit(origin, (depth * direction + offset).normalized());
       // What lies far in front or behind is another part of the surface.
       if (!sample || sample->normal.dot(direction) >= 0) continue;
       if (central && std::abs((sample->position - origin).norm() - depth) > 4 * spread_world) continue;
+      sample->off_center = radius;
       samples.push_back(*sample);
     }
   }

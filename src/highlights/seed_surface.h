@@ -16,6 +16,7 @@ struct SurfaceSample {
   Eigen::Vector3d normal;   // unit, smoothed over the seed's facets, outward
   double spread_world = 0;  // over how wide a patch the seed's normals say something about this place
   double error_world = 0;   // how far the seed may be off here
+  double off_center = 0;    // how far from the central ray, fraction of the spread
 };
 
 class SeedSurface {

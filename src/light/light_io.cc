@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
@@ -53,12 +54,32 @@ struct Record {
     return vector;
   }
 
-  double OptionalSigma(const char* key) const {
+  double OptionalNumber(const char* key) const {
     const auto it = value.find(key);
     if (it == value.end()) return 0;
     if (!it->is_number() || !std::isfinite(it->get<double>()) || it->get<double>() < 0)
       Fail(fmt::format("\"{}\" must be a number, zero or positive, found {}", key, it->dump()));
     return it->get<double>();
+  }
+
+  Eigen::Matrix3d OptionalCovariance() const {
+    const auto it = value.find("covariance");
+    if (it == value.end()) return Eigen::Matrix3d::Zero();
+    std::array<double, 6> c{};
+    bool sound = it->is_array() && it->size() == c.size();
+    for (size_t i = 0; sound && i < c.size(); ++i) {
+      sound = (*it)[i].is_number() && std::isfinite((*it)[i].get<double>());
+      if (sound) c[i] = (*it)[i].get<double>();
+    }
+    if (!sound) Fail(fmt::format("\"covariance\" must be a list of 6 numbers, found {}", it->dump()));
+    return (Eigen::Matrix3d() << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]).finished();
+  }
+
+  std::string OptionalText(const char* key) const {
+    const auto it = value.find(key);
+    if (it == value.end()) return "";
+    if (!it->is_string()) Fail(fmt::format("\"{}\" must be a text, found {}", key, it->dump()));
+    return it->get<std::string>();
   }
 
   void AllowOnly(std::initializer_list<std::string_view> keys) const {
@@ -76,18 +97,30 @@ Light ParseLight(const Record& record) {
   light.type = record.RequireOneOf("type", "distant", "point") == "distant" ? LightType::kDistant : LightType::kPoint;
   light.frame = record.RequireOneOf("frame", "world", "camera") == "world" ? LightFrame::kWorld : LightFrame::kCamera;
   if (light.type == LightType::kPoint) {
-    record.AllowOnly({"type", "frame", "position", "sigma"});
+    record.AllowOnly({"type", "frame", "position", "sigma", "covariance", "support", "conditioning", "why"});
     light.vector = record.RequireVector("position");
-    light.sigma = record.OptionalSigma("sigma");
+    light.sigma = record.OptionalNumber("sigma");
     return light;
   }
-  record.AllowOnly({"type", "frame", "direction_to_light", "sigma_deg"});
+  record.AllowOnly(
+      {"type", "frame", "direction_to_light", "sigma_deg", "covariance", "support", "conditioning", "why"});
   light.vector = record.RequireVector("direction_to_light");
-  light.sigma = record.OptionalSigma("sigma_deg");
+  light.sigma = record.OptionalNumber("sigma_deg");
   const double length = light.vector.stableNorm();
   if (!(length > 0)) record.Fail("\"direction_to_light\" has zero length");
   light.vector = (light.vector / length).normalized();
   return light;
+}
+
+FoundLight ParseFoundLight(const Record& record, bool determined) {
+  FoundLight found;
+  found.light = ParseLight(record);
+  found.covariance = record.OptionalCovariance();
+  found.support = record.OptionalNumber("support");
+  found.conditioning = record.OptionalNumber("conditioning");
+  found.determined = determined;
+  found.why = record.OptionalText("why");
+  return found;
 }
 
 ordered_json ToJson(const Light& light) {
@@ -100,11 +133,18 @@ ordered_json ToJson(const Light& light) {
   return out;
 }
 
-}  // namespace
+ordered_json ToJson(const FoundLight& found) {
+  ordered_json out = ToJson(found.light);
+  const Eigen::Matrix3d& c = found.covariance;
+  if (!c.isZero()) out["covariance"] = {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
+  if (found.support > 0) out["support"] = found.support;
+  if (found.conditioning > 0) out["conditioning"] = found.conditioning;
+  if (!found.why.empty()) out["why"] = found.why;
+  return out;
+}
 
-std::vector<Light> ReadLights(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::ifstream file(path, std::ios::binary);
+json Parse(const std::string& name) {
+  std::ifstream file(name, std::ios::binary);
   if (!file) throw InputError(name, "", "cannot be read; expected a lights file (JSON)");
   json root;
   try {
@@ -112,22 +152,51 @@ std::vector<Light> ReadLights(const std::filesystem::path& path) {
   } catch (const json::exception& e) {
     throw InputError(name, "", fmt::format("is not valid JSON: {}", e.what()));
   }
-  if (!root.is_object() || !root.contains("lights") || !root["lights"].is_array())
-    throw InputError(name, "", "expected an object with a list \"lights\"");
-  Record{name, "", root}.AllowOnly({"lights"});
-  if (root["lights"].empty()) throw InputError(name, "lights", "the list is empty; expected at least one light");
-  std::vector<Light> lights;
+  for (const char* list : {"lights", "undetermined"}) {
+    const bool missing = !root.is_object() || !root.contains(list);
+    if ((missing && list == std::string_view("lights")) || (!missing && !root[list].is_array()))
+      throw InputError(name, "", fmt::format("expected an object with a list \"{}\"", list));
+  }
+  Record{name, "", root}.AllowOnly({"lights", "undetermined"});
+  return root;
+}
+
+}  // namespace
+
+std::vector<FoundLight> ReadFoundLights(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const json root = Parse(name);
+  std::vector<FoundLight> found;
   for (size_t i = 0; i < root["lights"].size(); ++i)
-    lights.push_back(ParseLight({name, fmt::format("light {}", i), root["lights"][i]}));
+    found.push_back(ParseFoundLight({name, fmt::format("light {}", i), root["lights"][i]}, true));
+  if (root.contains("undetermined"))
+    for (size_t i = 0; i < root["undetermined"].size(); ++i)
+      found.push_back(ParseFoundLight({name, fmt::format("undetermined {}", i), root["undetermined"][i]}, false));
+  return found;
+}
+
+std::vector<Light> ReadLights(const std::filesystem::path& path) {
+  std::vector<Light> lights;
+  for (const FoundLight& found : ReadFoundLights(path))
+    if (found.determined) lights.push_back(found.light);
+  if (lights.empty()) throw InputError(path.string(), "lights", "the list is empty; expected at least one light");
   return lights;
 }
 
-void WriteLights(const std::filesystem::path& path, const std::vector<Light>& lights) {
-  ordered_json list = ordered_json::array();
-  for (const Light& light : lights) list.push_back(ToJson(light));
+void WriteFoundLights(const std::filesystem::path& path, const std::vector<FoundLight>& lights) {
   ordered_json root;
-  root["lights"] = list;
+  root["lights"] = ordered_json::array();
+  for (const FoundLight& found : lights) {
+    ordered_json& list = root[found.determined ? "lights" : "undetermined"];
+    list.push_back(ToJson(found));
+  }
   WriteFileAtomically(path, root.dump(2) + "\n");
+}
+
+void WriteLights(const std::filesystem::path& path, const std::vector<Light>& lights) {
+  std::vector<FoundLight> found;
+  for (const Light& light : lights) found.emplace_back().light = light;
+  WriteFoundLights(path, found);
 }
 
 }  // namespace glint

@@ -1,8 +1,11 @@
 // The main job end to end, through the program, on a small rendered scene.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "light/light_io.h"
 #include "tests/pipeline/program.h"
 
 namespace glint {
@@ -114,7 +117,7 @@ TEST_F(Run, ByteIdenticalAtAnyNumberOfThreads) {
 
 TEST_F(Run, GoesOnFromAnyStageToTheSameMesh) {
   const std::string mesh = ReadText(Out() / "mesh.ply");
-  for (const char* stage : {"refine", "gate"}) {
+  for (const char* stage : {"refine", "gate", "lights"}) {
     fs::remove_all(folder_ / "again");
     fs::copy(Out(), folder_ / "again", fs::copy_options::recursive);
     fs::remove(folder_ / "again/mesh.ply");
@@ -133,8 +136,27 @@ TEST_F(Run, StagesOfAnotherProjectAreNotTaken) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("points_on_object.txt"), HasSubstr("another project")));
 }
 
-TEST_F(Run, WithoutLightsItSaysSoAndKeepsWhatItFound) {
-  const ProgramResult result = RunGlint(Arguments(Path("dark"), {}, false));
+TEST_F(Run, LightsThatNobodyGaveAreFound) {
+  const ProgramResult result = RunGlint(Arguments(Path("found"), {}, false));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::vector<Light> truth = ReadLights(Lights()), found = ReadLights(folder_ / "found/lights.json");
+  ASSERT_EQ(found.size(), truth.size());
+  for (const Light& t : truth) {
+    double nearest_deg = 180;
+    for (const Light& f : found) {
+      EXPECT_EQ(f.type, LightType::kDistant);
+      EXPECT_EQ(f.frame, LightFrame::kWorld);
+      nearest_deg = std::min(nearest_deg, std::acos(std::min(1.0, t.vector.dot(f.vector))) * 180 / M_PI);
+    }
+    EXPECT_LT(nearest_deg, 3);
+  }
+  const Json lights = Report(folder_ / "found")["lights"];
+  EXPECT_TRUE(lights["given"].empty());
+  EXPECT_EQ(lights["found"]["lights"].size(), truth.size());
+}
+
+TEST_F(Run, TooFewHighlightsForALightAreSaidAndKept) {
+  const ProgramResult result = RunGlint(Arguments(Path("dark"), {"--set", "lights.min_support=1000"}, false));
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, AllOf(HasSubstr("--lights"), HasSubstr(Path("dark"))));
   for (const char* name : {"seed.ply", "report.json", "highlights/view_000.jpg.png"})

@@ -1,0 +1,32 @@
+// One light against the normals under its highlights.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "light/light.h"
+#include "light/light_fit.h"
+
+namespace glint {
+
+// Tangent coordinates of a light: two of the direction (radians), or three of the position (in units of `diagonal`).
+int NumParameters(const Light& light);
+
+// What a step of one in each coordinate adds to light.vector; the third column is zero for a distant light.
+Eigen::Matrix3d TangentBasis(const Light& light, double diagonal);
+
+// Gauss-Newton equations of sum w |h - n|², h the half vector and n the normal, by central differences in the tangent
+// coordinates. Observations beyond the incidence limit do not count.
+struct LightEquations {
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  double cost = 0;
+};
+LightEquations LineariseLight(const std::vector<LightObservation>& observations, const Eigen::VectorXd& weights,
+                              const Light& light, double max_incidence_deg, double diagonal);
+
+// A few damped Gauss-Newton steps.
+void AdjustLight(const std::vector<LightObservation>& observations, const Eigen::VectorXd& weights,
+                 double max_incidence_deg, double diagonal, Light& light);
+
+}  // namespace glint

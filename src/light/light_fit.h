@@ -1,0 +1,47 @@
+// Unknown lights from surface normals under highlights: how many, of which kind, where.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "geometry/rigid.h"
+#include "light/found_light.h"
+#include "light/light.h"
+
+namespace glint {
+
+// One highlight: its view, and what is believed of the surface under it. It may be an outlier.
+struct LightObservation {
+  Rigid3d cam_from_world;
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;  // unit, outward
+};
+
+struct LightFitOptions {
+  int max_lights = 6;
+  int min_support = 5;  // highlights a light needs
+  double max_incidence_deg = 65;
+  bool allow_distant = true;
+  bool allow_point = true;
+  bool allow_world = true;
+  bool allow_camera = true;
+};
+
+struct LightFit {
+  std::vector<FoundLight> lights;  // by falling support
+  std::vector<int> assignment;     // light of each observation, -1: outlier
+  double normal_sigma_deg = 0;     // of the normals' disagreement with the half vectors
+  double outlier_share = 0;
+};
+
+// A mixture of lights and uniform outliers on the normals, l = 2 (n·v) n − v [DESIGN 3.3]: lights are added one by one
+// from the best of a grid of directions in the world's and in the camera's frame and the camera itself (flash),
+// refined by expectation maximisation, and kept while the Bayesian information criterion falls; then each is tried as
+// a near one. `center`, `diagonal`: of the object, for the scale of positions.
+LightFit FitLights(const std::vector<LightObservation>& observations, const Eigen::Vector3d& center, double diagonal,
+                   const LightFitOptions& options);
+
+// Angle (radians) between half vector and normal; pi where the incidence is above the limit.
+double Disagreement(const LightObservation& observation, const Light& light, double max_incidence_deg);
+
+}  // namespace glint
