@@ -56,4 +56,13 @@ void CheckGridFits(const TriangleMesh& mesh, double half_width_voxels, double ma
                     largest));
 }
 
+double CheckDenseFits(double num_voxels, size_t num_faces) {
+  const double bytes = num_voxels * sizeof(float) + static_cast<double>(num_faces) * kBytesPerTriangle;
+  if (bytes > FreeBytes())
+    throw InputError("", "grid size",
+                     fmt::format("{:.4g} voxels need about {:.3g} GB, and {:.3g} GB are free", num_voxels, bytes / 1e9,
+                                 FreeBytes() / 1e9));
+  return bytes;
+}
+
 }  // namespace glint

@@ -1,6 +1,8 @@
 // What a narrow band will take, said before it is taken.
 #pragma once
 
+#include <cstddef>
+
 #include "geometry/triangle_mesh.h"
 
 namespace glint {
@@ -11,5 +13,8 @@ double PredictBandBytes(const TriangleMesh& mesh_in_index, double half_width_vox
 // Throws InputError if the coordinates do not fit OpenVDB's 32-bit indices or if the prediction exceeds
 // max_memory_gb (0: the memory that is free now).
 void CheckGridFits(const TriangleMesh& mesh_in_index, double half_width_voxels, double max_memory_gb);
+
+// The same for a dense grid of so many voxels, in the memory that is free now. Gives the bytes that it will need.
+double CheckDenseFits(double num_voxels, size_t num_faces);
 
 }  // namespace glint

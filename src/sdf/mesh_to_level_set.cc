@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "sdf/band_maker.h"
+#include "sdf/index_frame.h"
 #include "sdf/level_set_impl.h"
 #include "sdf/memory_budget.h"
 #include "sdf/prepared_mesh.h"
@@ -45,21 +46,6 @@ openvdb::math::Transform::Ptr ToVdb(const Eigen::Affine3d& world_from_index, dou
   return openvdb::math::Transform::createLinearTransform(matrix);
 }
 
-// The edge length of the voxels; throws InputError unless the transform is a similarity.
-double VoxelSize(const Eigen::Affine3d& world_from_index) {
-  const Eigen::Matrix3d m = world_from_index.linear();
-  const double size = std::cbrt(m.determinant());
-  if (!world_from_index.matrix().allFinite() || !(size > 0) || !(m.transpose() * m / (size * size)).isIdentity(1e-9))
-    throw InputError("", "grid transform", "expected a rotation, a positive uniform scale and a translation");
-  // OpenVDB takes transforms of a smaller determinant for singular.
-  if (size < kSmallestVoxelWorld)
-    throw InputError("", "voxel size",
-                     fmt::format("expected at least {} (the smallest that OpenVDB can hold), found {}; "
-                                 "scale the mesh up",
-                                 kSmallestVoxelWorld, size));
-  return size;
-}
-
 // Makes the band by the method asked for; "auto" tries pseudo-normals and looks at what comes out.
 openvdb::FloatGrid::Ptr MakeBand(const internal::BandMaker& maker, const internal::PreparedMesh& prepared,
                                  const std::string& sign, float voxel_size, SdfSummary& summary) {
@@ -92,7 +78,7 @@ openvdb::FloatGrid::Ptr MakeBand(const internal::BandMaker& maker, const interna
 
 LevelSet MeshToLevelSet(const TriangleMesh& mesh, const Eigen::Affine3d& world_from_index, const SdfOptions& options,
                         SdfSummary* summary) {
-  const double voxel_size = VoxelSize(world_from_index);
+  const double voxel_size = internal::VoxelSizeOf(world_from_index);
   const std::vector<std::string> violations = Violations(options);
   if (!violations.empty()) throw InputError("", "signed distance options", violations.front());
   const internal::PreparedMesh prepared = internal::PrepareMesh(mesh, world_from_index.inverse());

@@ -5,12 +5,11 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "geometry/components.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
-#include "geometry/self_intersections.h"
 #include "geometry/winding_number.h"
 #include "sdf/prepared_mesh.h"
+#include "sdf/sign_choice.h"
 
 namespace glint {
 
@@ -28,33 +27,6 @@ struct SignedDistanceQuery::Impl {
   }
 };
 
-namespace {
-
-// Decides what "auto" means for a mesh.
-void ChooseSign(const internal::PreparedMesh& prepared, SdfSummary& summary) {
-  summary.sign = "winding";
-  if (!prepared.balanced) {
-    summary.reason = "the mesh is not closed and consistently oriented: " + internal::DescribeEdges(prepared.mesh);
-    return;
-  }
-  const EdgeTopology topology = BuildEdgeTopology(prepared.mesh);
-  Components components = FindComponents(prepared.mesh, topology);
-  FindWindings(prepared.mesh, components);
-  for (const Component& c : components.list)
-    if (!c.bounds_solid()) {
-      summary.reason = "components of the mesh are inside out or inside others";
-      return;
-    }
-  if (!SelfIntersections(prepared.mesh, 1).empty()) {
-    summary.reason = "faces of the mesh pass through each other";
-    return;
-  }
-  summary.sign = "pseudonormal";
-  summary.reason = "the mesh is closed and consistently oriented, and no faces pass through each other";
-}
-
-}  // namespace
-
 SignedDistanceQuery::~SignedDistanceQuery() = default;
 SignedDistanceQuery::SignedDistanceQuery(SignedDistanceQuery&&) noexcept = default;
 const SdfSummary& SignedDistanceQuery::summary() const { return impl_->summary; }
@@ -70,7 +42,7 @@ SignedDistanceQuery::SignedDistanceQuery(const TriangleMesh& mesh, const std::st
   self.summary.degenerate_faces = self.prepared.collapsed_faces;
   self.summary.sign = sign;
   self.summary.reason = "as asked";
-  if (sign == "auto") ChooseSign(self.prepared, self.summary);
+  if (sign == "auto") internal::ChooseSign(self.prepared, self.summary);
   if (self.summary.sign == "pseudonormal") self.normals = ComputePseudoNormals(m, BuildEdgeTopology(m));
   self.closest = std::make_unique<ClosestPointQuery>(m);
   if (self.summary.sign == "winding") self.winding = std::make_unique<WindingNumber>(m, self.closest->bvh());
