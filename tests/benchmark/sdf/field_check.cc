@@ -17,6 +17,7 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 std::vector<const Leaf*> SomeLeaves(const LevelSet& field, double wanted) {
   std::vector<const Leaf*> all, some;
   field.impl().grid->tree().getNodes(all);
+  if (!(wanted >= 1)) return some;
   const size_t step = std::max<size_t>(1, static_cast<size_t>(512.0 * static_cast<double>(all.size()) / wanted));
   for (size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
   return some;
