@@ -31,7 +31,8 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
   const double foot_sigma = kFootSigmaRel * Diagonal(surface.mesh);
   std::vector<Attachment> attachments;
   for (size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
-    Attachment a{surface.mesh.vertices[v], foot_sigma};
+    if (surface.scene_point[v] == kMiddleVertex) continue;
+    Attachment a{surface.mesh.vertices[v], foot_sigma, 1, surface.scene_point[v]};
     if (const int point = surface.scene_point[v]; point >= 0) {
       const double views = static_cast<double>(scene.points[point].observations.size());
       a.sigma = reliability.sigma[point];
@@ -44,10 +45,10 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
 
 // Fairs ever more stiffly until the surface does not pass through itself.
 FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                            const std::vector<Eigen::Vector3d>& eyes, FairOptions options, SeedSummary& summary) {
+                            const FairContext& context, FairOptions options, SeedSummary& summary) {
   FairResult result;
   for (int attempt = 0; attempt < kMaxStiffenings; ++attempt) {
-    result = FairThroughPoints(mesh, attachments, eyes, options);
+    result = FairThroughPoints(mesh, attachments, context, options);
     if (SelfIntersections(result.mesh, 1).empty()) return result;
     options.smoothing *= 1.6;
   }
@@ -56,12 +57,12 @@ FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachme
 }
 
 // Takes the points that the smooth surface disbelieves out of the object; true if there were any.
-bool DropDoubted(const SparseSurface& surface, const FairResult& fair, PointReliability& reliability,
+bool DropDoubted(const std::vector<Attachment>& attachments, const FairResult& fair, PointReliability& reliability,
                  ObjectChoice& choice) {
   bool any = false;
-  for (size_t v = 0; v < surface.scene_point.size(); ++v) {
-    const int point = surface.scene_point[v];
-    if (point < 0 || fair.trust[v] > kMinTrust || choice.role[point] != PointRole::kObject) continue;
+  for (size_t i = 0; i < attachments.size(); ++i) {
+    const int point = attachments[i].point;
+    if (point < 0 || fair.trust[i] > kMinTrust || choice.role[point] != PointRole::kObject) continue;
     reliability.status[point] = PointStatus::kVirtual;
     choice.role[point] = PointRole::kUnused;
     any = true;
@@ -123,16 +124,18 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     s.warnings.push_back(fmt::format("only {} sparse points on the object: no seed", s.num_object_points));
     return out;
   }
-  std::vector<Eigen::Vector3d> eyes;
-  for (const View& view : scene.views) eyes.push_back(view.Center());
+  FairContext context;
+  for (const View& view : scene.views) context.eyes.push_back(view.Center());
+  if (choice.ground) context.ground = choice.ground->plane;
   SparseSurface surface;
   FairResult fair;
   for (int round = 0; round < kRounds; ++round) {
     surface = MakeSparseSurface(scene, reliability, choice, options.surface);
     progress.ThrowIfCancelled();
     if (surface.mesh.empty()) break;
-    fair = FairWithoutFolds(surface.mesh, Attachments(scene, surface, reliability), eyes, options.smooth, s);
-    if (round + 1 == kRounds || !DropDoubted(surface, fair, reliability, choice)) break;
+    const std::vector<Attachment> attachments = Attachments(scene, surface, reliability);
+    fair = FairWithoutFolds(surface.mesh, attachments, context, options.smooth, s);
+    if (round + 1 == kRounds || !DropDoubted(attachments, fair, reliability, choice)) break;
   }
   CountPoints(reliability, choice, s);
   progress.Advance();

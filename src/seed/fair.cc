@@ -7,11 +7,9 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "core/parallel.h"
 #include "geometry/closest_point.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
-#include "geometry/ray_caster.h"
 #include "seed/remesh.h"
 
 namespace glint {
@@ -22,10 +20,12 @@ using Triplet = Eigen::Triplet<double>;
 
 constexpr double kMinSigmaRel = 5e-4;  // of the diagonal: no sparse point is surer than this
 constexpr double kMinCot = 0.05, kMaxCot = 3;
-constexpr double kInertia = 1e-3;    // of the pull on what is not seen: keeps the system well posed
-constexpr double kRestLength = 1;    // spacings over which the natural curvature is even
-constexpr double kStiffStart = 2.5;  // times the smoothing asked for
-constexpr double kTrustedRange = 4;  // usual distances: farther attachments lose most of their weight
+constexpr double kInertia = 2e-6;        // of the pull of points: keeps the system well posed
+constexpr double kUnseenCosine = -0.25;  // of the normal with the ways to all cameras
+constexpr double kRestLength = 1;        // spacings over which the natural curvature is even
+constexpr double kMinBelief = 1e-3;      // in a curvature where nothing is known
+constexpr double kStiffStart = 2.5;      // times the smoothing asked for
+constexpr double kTrustedRange = 4;      // usual distances: farther attachments lose most of their weight
 
 double Median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
@@ -111,18 +111,36 @@ Sparse ThinPlate(const Laplacian& laplacian, double lambda) {
   return Sparse(laplacian.stiffness * laplacian.stiffness) * (lambda / laplacian.area);
 }
 
-// What L x is to be: the mean curvature normal of the surface as it stands, with the curvature diffused over `length`.
-// A plate that is bent by nature keeps the bend of its surroundings where no point holds it; a flat one would flatten.
-Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const Laplacian& laplacian, double length) {
+// How well the surface is known at its vertices, 0 … 1: the density of the attachments, spread over `length`, against
+// `density` (attachments an area).
+Eigen::VectorXd Knowledge(const std::vector<Foot>& feet, const std::vector<double>& trust, const Laplacian& laplacian,
+                          double length, double density) {
+  Eigen::VectorXd deposits = Eigen::VectorXd::Zero(laplacian.stiffness.rows());
+  for (size_t i = 0; i < feet.size(); ++i)
+    for (int k = 0; k < 3; ++k) deposits[feet[i].face[k]] += trust[i] * feet[i].weights[k] / (laplacian.area * density);
+  Sparse spread = laplacian.stiffness * (length * length / laplacian.area);
+  for (int v = 0; v < deposits.size(); ++v) spread.coeffRef(v, v) += 1;
+  const Eigen::VectorXd known = Eigen::SimplicialLDLT<Sparse>(spread).solve(deposits);
+  return known.cwiseMax(0).cwiseMin(1);
+}
+
+// What L x is to be: the mean curvature normal of the surface as it stands, with the curvature diffused over `length`
+// where it is known and continued from there where it is not. A plate that is bent by nature keeps the bend of its
+// surroundings where no point holds it; a flat one would flatten.
+Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const Laplacian& laplacian, double length,
+                               const Eigen::VectorXd& known) {
   const int n = static_cast<int>(mesh.vertices.size());
   Eigen::MatrixX3d x(n, 3);
   for (int v = 0; v < n; ++v) x.row(v) = mesh.vertices[v];
   const Eigen::MatrixX3d bend = laplacian.stiffness * x;
   const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
   Eigen::VectorXd curvature(n);
-  for (int v = 0; v < n; ++v) curvature[v] = bend.row(v).dot(normals[v]);
   Sparse diffusion = laplacian.stiffness * (length * length / laplacian.area);
-  for (int v = 0; v < n; ++v) diffusion.coeffRef(v, v) += 1;
+  for (int v = 0; v < n; ++v) {
+    const double belief = std::max(known[v] * known[v], kMinBelief);
+    curvature[v] = belief * bend.row(v).dot(normals[v]);
+    diffusion.coeffRef(v, v) += belief;
+  }
   const Eigen::VectorXd smooth = Eigen::SimplicialLDLT<Sparse>(diffusion).solve(curvature);
   Eigen::MatrixX3d rest(n, 3);
   for (int v = 0; v < n; ++v) rest.row(v) = smooth[v] * normals[v];
@@ -148,25 +166,23 @@ struct Springs {
   }
 };
 
-// Holds what no camera sees where the sparse surface is; everything else hardly at all, where it stands.
-void HoldUnseen(const TriangleMesh& mesh, const ClosestPointQuery& raw, const std::vector<Eigen::Vector3d>& eyes,
-                double weight, Springs& springs) {
-  const double margin = 1e-4 * Diagonal(mesh);
-  const RayCaster caster(mesh);
+// Holds everything hardly at all where it stands, and what faces away from every camera where the sparse surface is;
+// but an object on the ground closes itself below, and what would pass the ground is held on it.
+void HoldUnseen(const TriangleMesh& mesh, const ClosestPointQuery& raw, const FairContext& context, double weight,
+                double stay, Springs& springs) {
   const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
-  std::vector<uint8_t> seen(mesh.vertices.size(), 0);
-  ParallelFor(seen.size(), 256, [&](size_t v) {
-    const Eigen::Vector3d& x = mesh.vertices[v];
-    for (const Eigen::Vector3d& eye : eyes)
-      if (normals[v].dot(eye - x) > 0 && !caster.Occluded(x, eye, margin)) {
-        seen[v] = 1;
-        break;
-      }
-  });
-  for (size_t v = 0; v < seen.size(); ++v) {
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Eigen::Vector3d& x = mesh.vertices[v];
     springs.Hold(static_cast<int>(v), x, kInertia * weight);
-    if (!seen[v]) springs.Hold(static_cast<int>(v), raw.Find(x)->point, weight);
+    if (context.ground) {
+      if (context.ground->signedDistance(x) < 0)
+        springs.Hold(static_cast<int>(v), context.ground->projection(x), weight);
+      continue;
+    }
+    const bool seen = std::any_of(context.eyes.begin(), context.eyes.end(), [&](const Eigen::Vector3d& eye) {
+      return normals[v].dot((eye - x).normalized()) > kUnseenCosine;
+    });
+    if (!seen) springs.Hold(static_cast<int>(v), raw.Find(x)->point, stay * weight);
   }
 }
 
@@ -201,7 +217,7 @@ void FairOptions::Visit(OptionVisitor& v) {
 }
 
 FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                             const std::vector<Eigen::Vector3d>& eyes, const FairOptions& options) {
+                             const FairContext& context, const FairOptions& options) {
   GLINT_CHECK(!mesh.empty());
   const double diagonal = Diagonal(mesh);
   const ClosestPointQuery raw(mesh);
@@ -223,14 +239,17 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     const double lambda = std::pow(SmoothingOf(options, round), 4) * spring / density;
     const int n = static_cast<int>(out.mesh.vertices.size());
     Springs springs(n);
-    HoldUnseen(out.mesh, raw, eyes, options.stay * spring * density * laplacian.area, springs);
+    HoldUnseen(out.mesh, raw, context, spring * density * laplacian.area, options.stay, springs);
     for (size_t i = 0; i < feet.size(); ++i) springs.Attach(feet[i], attachments[i].position, weights[i]);
     Sparse system(n, n);
     system.setFromTriplets(springs.entries.begin(), springs.entries.end());
     system += ThinPlate(laplacian, lambda);
-    if (round > 0)
-      springs.right += lambda / laplacian.area *
-                       (laplacian.stiffness * RestCurvature(out.mesh, laplacian, kRestLength / std::sqrt(density)));
+    if (round > 0) {
+      const double length = kRestLength / std::sqrt(density);
+      const Eigen::VectorXd known = Knowledge(feet, out.trust, laplacian, length, density);
+      springs.right +=
+          lambda / laplacian.area * (laplacian.stiffness * RestCurvature(out.mesh, laplacian, length, known));
+    }
     const Eigen::SimplicialLDLT<Sparse> solver(system);
     if (solver.info() != Eigen::Success) return out;  // singular: what stands so far is closed and sound
     const Eigen::MatrixX3d x = solver.solve(springs.right);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "core/options.h"
@@ -12,7 +14,7 @@ namespace glint {
 struct FairOptions {
   double edge_rel = 0.015;
   double smoothing = 0.18;
-  double stay = 0.005;
+  double stay = 0.002;
   int rounds = 6;
 
   void Visit(OptionVisitor& v);
@@ -24,6 +26,13 @@ struct Attachment {
   Eigen::Vector3d position;
   double sigma;
   double credit = 1;
+  int point = -1;  // the caller's name for it
+};
+
+// What is known besides the points.
+struct FairContext {
+  std::vector<Eigen::Vector3d> eyes;                        // of the cameras
+  std::optional<Eigen::Hyperplane<double, 3>> ground = {};  // the object is on its positive side
 };
 
 struct FairResult {
@@ -37,11 +46,13 @@ struct FairResult {
 //   λ ∫‖Δx − r‖² + Σᵢ wᵢ ‖x(attached point of i) − pᵢ‖² + stay · (such springs, to the sparse surface, where no eye
 //   sees it)
 // with λ set so that the surface bends over `smoothing` times the spacing of the attachments, and r the curvature
-// normal of the round before with its curvature evened out: a plate bent by nature, which spheres (and, between points,
-// any body of slowly changing curvature) cost nothing; flat facets cut 2–3 % off a convex body. The rounds go from
-// stiff to soft, so that points which disagree with their neighbourhood lose their weight before the surface could bend
-// to them. The mesh must be closed and manifold; topology is kept.
+// normal of the round before with its curvature evened out, and continued into what no point holds: a plate bent by
+// nature, which spheres (and, between points, any body of slowly changing curvature) cost nothing; flat facets cut
+// 2–3 % off a convex body. With a ground, what is unseen below closes itself by that curvature, down to the ground,
+// instead of staying with the sparse surface. The rounds go from stiff to soft, so that points which disagree with
+// their neighbourhood lose their weight before the surface could bend to them. The mesh must be closed and manifold;
+// topology is kept.
 FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                             const std::vector<Eigen::Vector3d>& eyes, const FairOptions& options);
+                             const FairContext& context, const FairOptions& options);
 
 }  // namespace glint

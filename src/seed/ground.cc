@@ -80,6 +80,7 @@ double Spread(const std::vector<Eigen::Vector3d>& points, const Plane& plane, do
   std::vector<double> distances;
   for (const Eigen::Vector3d& p : points)
     if (plane.absDistance(p) < tolerance) distances.push_back(plane.absDistance(p));
+  if (distances.empty()) return tolerance;
   std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
   return std::clamp(3 * 1.4826 * distances[distances.size() / 2], 0.1 * tolerance, tolerance);
 }

@@ -1,7 +1,7 @@
 #include "seed/ray_votes.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -16,21 +16,26 @@ namespace glint {
 namespace {
 
 constexpr size_t kGrain = 64;
+constexpr int kMaxWithoutProgress = 64;  // cells in a row whose exits lie no farther along the ray
+constexpr int kLost = -1;
 
 void Add(int64_t& sum, int64_t vote) { std::atomic_ref<int64_t>(sum).fetch_add(vote, std::memory_order_relaxed); }
 
-// The corner of `cell` where `point` is, if the cell lies on the side of `direction` from there; of the finite cells
-// around the point exactly one does, up to rounding: `depth` says how well.
+// How deep a direction lies in the cell's cone at one of its corners: sine of the least angle to the cone's three
+// sides, negative outside. Signs come from the cell's exact orientation, so that a cell flat up to rounding is judged
+// as well as any other.
 double DepthInCone(const Tetrahedra& t, int cell, int corner, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d apex = t.Corner(cell, corner);
   Eigen::Matrix3d edges;
-  for (int k = 0; k < 3; ++k) edges.col(k) = (t.Corner(cell, kOutwardFacet[corner][k]) - apex).normalized();
-  // Cramer's rule without the division: the determinant is positive up to the corner's parity.
-  const double det = edges.determinant();
-  if (det == 0) return -std::numeric_limits<double>::infinity();
-  const Eigen::Vector3d a = edges.col(0), b = edges.col(1), c = edges.col(2);
-  const Eigen::Vector3d weights(direction.dot(b.cross(c)), direction.dot(c.cross(a)), direction.dot(a.cross(b)));
-  return (weights / det).minCoeff();
+  for (int k = 0; k < 3; ++k) edges.col(k) = t.Corner(cell, kOutwardFacet[corner][k]) - apex;
+  double depth = 1;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d inward = edges.col((k + 1) % 3).cross(edges.col((k + 2) % 3));
+    const double length = inward.norm();
+    if (!(length > 0)) return -1;
+    depth = std::min(depth, direction.dot(inward) / length);
+  }
+  return depth;
 }
 
 struct Exit {
@@ -58,12 +63,19 @@ Exit LeavingFacet(const Tetrahedra& tets, int cell, int entry, const Eigen::Vect
 }
 
 // Follows a ray from `exit` of `cell` on; visit(cell, facet, t) at every facet that is left, and returns the cell at
-// distance t_end from the origin (an infinite cell if the hull ends before).
+// distance t_end from the origin: an infinite cell if the hull ends before, kLost if rounding leads round in circles
+// among flat cells or leaves no way on.
 template <class Visit>
 int Follow(const Tetrahedra& tets, int cell, Exit exit, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
            double t_end, const Visit& visit) {
-  for (size_t step = 0; step < tets.cells.size(); ++step) {
-    if (exit.facet < 0 || !(exit.t < t_end)) return cell;
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (int without_progress = 0; without_progress < kMaxWithoutProgress; ++without_progress) {
+    if (exit.facet < 0) return kLost;
+    if (!(exit.t < t_end)) return cell;
+    if (exit.t > farthest) {
+      farthest = exit.t;
+      without_progress = 0;
+    }
     visit(cell, exit.facet, exit.t);
     const int next = tets.neighbors[cell][exit.facet];
     if (tets.IsInfinite(next)) return next;
@@ -72,15 +84,15 @@ int Follow(const Tetrahedra& tets, int cell, Exit exit, const Eigen::Vector3d& o
     cell = next;
     exit = LeavingFacet(tets, cell, entry, origin, direction);
   }
-  return cell;
+  return kLost;
 }
 
-// The same from a corner of the triangulation.
+// The same from a corner of the triangulation. A point on the hull may look outward: into one of its infinite cells.
 template <class Visit>
 int FollowFromPoint(const Tetrahedra& tets, const std::vector<int>& around, int point, const Eigen::Vector3d& direction,
                     double t_end, const Visit& visit) {
-  int cell = -1, infinite = -1;
-  double best = -1e-9;  // rounding: a ray along a facet belongs to either side
+  int cell = kLost, infinite = kLost;
+  double best = -std::numeric_limits<double>::infinity();
   for (int c : around) {
     if (tets.IsInfinite(c)) {
       infinite = c;
@@ -92,7 +104,9 @@ int FollowFromPoint(const Tetrahedra& tets, const std::vector<int>& around, int 
       cell = c;
     }
   }
-  if (cell < 0) return infinite;
+  // Rounding: a ray along a facet belongs to either side, and inside the hull to one of the cells in any case.
+  if (infinite != kLost && best < -1e-9) return infinite;
+  if (cell == kLost) return kLost;
   const int facet = tets.CornerOf(cell, point);
   const Eigen::Vector3d& origin = tets.points[point];
   const Eigen::Vector3d a = tets.Corner(cell, kOutwardFacet[facet][0]);
@@ -160,9 +174,9 @@ void CastSightLines(const Tetrahedra& tetrahedra, const std::vector<SightLine>& 
             Add(votes.facets[cell][facet], vote);
             Add(votes.crossed[cell], vote);
           });
-      Add(votes.outside[last], kVote);
+      if (last != kLost) Add(votes.outside[last], kVote);
       const int behind = FollowFromPoint(tetrahedra, around, point, -direction, 3 * s, [](int, int, double) {});
-      Add(votes.inside[behind], kVote);
+      if (behind != kLost) Add(votes.inside[behind], kVote);
     }
   });
 }

@@ -112,7 +112,7 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
     else if (scene.points[i].observations.size() >= kMinContextViews)
       context.push_back(static_cast<int>(i));
   }
-  for (const Eigen::Vector3d& x : Foot(scene, choice).Points()) vertices.push_back({x, -1, 0});
+  for (const Eigen::Vector3d& x : Foot(scene, choice).Points()) vertices.push_back({x, kFootVertex, 0});
   const SparseCells cells = BuildSparseCells(scene, vertices, context);
   const Tetrahedra& t = cells.tetrahedra;
   if (t.cells.empty()) return out;
@@ -121,7 +121,7 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
   FillCavities(t, labels);
   std::vector<int> vertex_point;
   out.mesh = CellSurface(t, labels, &vertex_point);
-  for (int p : vertex_point) out.scene_point.push_back(cells.scene_point[p]);
+  for (int p : vertex_point) out.scene_point.push_back(p >= 0 ? cells.scene_point[p] : kMiddleVertex);
   return out;
 }
 

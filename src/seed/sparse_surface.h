@@ -9,9 +9,13 @@
 
 namespace glint {
 
+// What a vertex of the sparse surface is, where it is no point of the scene.
+inline constexpr int kFootVertex = -1;    // on the ground below the object
+inline constexpr int kMiddleVertex = -2;  // in the middle of an edge, where sheets were separated
+
 struct SparseSurface {
   TriangleMesh mesh;             // closed, oriented outward, one piece; empty if the points enclose nothing
-  std::vector<int> scene_point;  // per vertex: index into the scene's points; −1: on the ground below the object
+  std::vector<int> scene_point;  // per vertex: index into the scene's points, kFootVertex or kMiddleVertex
 };
 
 // Matter touches only the object's points and the ground. Where the ground is hidden below the object, points are put

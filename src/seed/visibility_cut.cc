@@ -18,7 +18,8 @@ double CosToCircumsphere(const Tetrahedra& t, int cell, int facet) {
       (t.Corner(cell, kOutwardFacet[facet][1]) - a).cross(t.Corner(cell, kOutwardFacet[facet][2]) - a).normalized();
   const Eigen::Vector3d center = t.Circumcenter(cell);
   const double radius = (center - a).norm();
-  return radius > 0 ? std::clamp((a - center).dot(n) / radius, -1.0, 1.0) : 0;
+  const double cosine = (a - center).dot(n) / radius;
+  return std::isfinite(cosine) ? std::clamp(cosine, -1.0, 1.0) : 0;  // a cell flat up to rounding
 }
 
 double FacetCost(const Tetrahedra& t, int cell, int facet, int other, int other_facet) {
@@ -74,7 +75,11 @@ std::vector<uint8_t> CutCells(const Tetrahedra& tetrahedra, const RayVotes& vote
       graph.edges.push_back({c, next, votes.facets[next][back] + quality, votes.facets[c][k] + quality});
     }
   std::vector<uint8_t> labels = MinCut(graph);
-  for (uint8_t& l : labels) l = 1 - l;
+  for (size_t c = 0; c < num_cells; ++c) {
+    labels[c] = 1 - labels[c];
+    GLINT_CHECK(may_be_inside[c] || !labels[c]);
+    GLINT_CHECK(!labels[c] || !tetrahedra.IsInfinite(static_cast<int>(c)));
+  }
   return labels;
 }
 

@@ -137,6 +137,33 @@ TEST(BuildSeed, ATorusKeepsItsHole) {
   ExpectSound(seed.smooth, 1);
 }
 
+TEST(BuildSeed, FollowsScaleAndPlaceOfTheWorld) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, 300);
+  AddGround(scene, -1, 4, 30);
+  const SeedResult seed = BuildSeed(scene);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()));
+  for (double scale : {1e-6, 1e6}) {
+    const Eigen::Vector3d shift = scale * Eigen::Vector3d(3, -20, 7);
+    Scene moved = scene;
+    for (ScenePoint& p : moved.points) p.position = scale * (turn * p.position) + shift;
+    for (View& v : moved.views) {
+      const Eigen::Vector3d center = scale * (turn * v.Center()) + shift;
+      v.cam_from_world.rotation = v.cam_from_world.rotation * turn.conjugate();
+      v.cam_from_world.translation = -(v.cam_from_world.rotation * center);
+    }
+    const SeedResult other = BuildSeed(moved);
+    EXPECT_EQ(other.point_used, seed.point_used);
+    ASSERT_FALSE(other.smooth.empty());
+    TriangleMesh back = other.smooth;
+    for (Eigen::Vector3d& v : back.vertices) v = turn.conjugate() * (v - shift) / scale;
+    const ClosestPointQuery query(seed.smooth);
+    double worst = 0;
+    for (const Eigen::Vector3d& v : back.vertices) worst = std::max(worst, std::sqrt(query.Find(v)->squared_distance));
+    EXPECT_LT(worst, 0.05) << "at scale " << scale;
+  }
+}
+
 TEST(BuildSeed, IsTheSameForAnyNumberOfThreads) {
   Scene scene = DomeScene(36, 5);
   AddSphere(scene, 200);

@@ -94,6 +94,27 @@ TEST(MinCut, IsAsCheapAsTheBestOfAllCuts) {
   }
 }
 
+TEST(CellSurface, AnyLabelsGiveAClosedOrientedManifold) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Tetrahedra t = DelaunayTetrahedra(RandomPoints(60, 10 + seed));
+    std::mt19937 random(seed);
+    std::vector<uint8_t> labels(t.cells.size(), 0);
+    double volume = 0;
+    for (int c = 0; c < static_cast<int>(labels.size()); ++c)
+      if (!t.IsInfinite(c) && random() % 2) {
+        labels[c] = 1;
+        volume += t.Volume(c);
+      }
+    const TriangleMesh mesh = CellSurface(t, labels);
+    const MeshChecks checks = CheckMeshSoundness(mesh, {.self_intersections = false});
+    EXPECT_TRUE(checks.closed);
+    EXPECT_TRUE(checks.oriented);
+    EXPECT_TRUE(checks.manifold);
+    EXPECT_EQ(checks.welded_vertices, 0u);
+    EXPECT_NEAR(SignedVolume(mesh), volume, 0.02 * volume);
+  }
+}
+
 TEST(RayVotes, ASightLineCarvesTheFacetsBeforeItsPoint) {
   // A point in the middle of others: every facet on the way out to the eye gets a vote, and the cell behind a claim.
   std::vector<Eigen::Vector3d> points = RandomPoints(200, 5);
