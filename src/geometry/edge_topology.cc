@@ -1,6 +1,8 @@
 #include "geometry/edge_topology.h"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -9,7 +11,7 @@ namespace glint {
 
 namespace {
 
-// Corners by the lower vertex of their edge; ascending within a vertex.
+// Corners by the lower vertex of their edge.
 struct CornersByVertex {
   std::vector<uint32_t> first;
   std::vector<uint32_t> corners;
@@ -25,15 +27,21 @@ int Higher(const TriangleMesh& mesh, uint32_t corner) {
   return std::max(face[corner % 3], face[(corner % 3 + 1) % 3]);
 }
 
+// In any order within a vertex.
 CornersByVertex SortByLowerVertex(const TriangleMesh& mesh) {
-  const uint32_t num_corners = static_cast<uint32_t>(3 * mesh.faces.size());
+  const size_t num_corners = 3 * mesh.faces.size(), num_vertices = mesh.vertices.size();
   CornersByVertex out;
-  out.first.assign(mesh.vertices.size() + 1, 0);
+  std::vector<uint32_t> next(num_vertices + 1, 0);
+  const auto take = [&](size_t c) {
+    return std::atomic_ref<uint32_t>(next[Lower(mesh, static_cast<uint32_t>(c))])
+        .fetch_add(1, std::memory_order_relaxed);
+  };
+  ParallelFor(num_corners, 16384, [&](size_t c) { take(c); });
+  out.first.resize(num_vertices + 1);
+  std::exclusive_scan(next.begin(), next.end(), out.first.begin(), 0u);
+  std::copy(out.first.begin(), out.first.end(), next.begin());
   out.corners.resize(num_corners);
-  for (uint32_t c = 0; c < num_corners; ++c) ++out.first[Lower(mesh, c) + 1];
-  for (size_t v = 0; v < mesh.vertices.size(); ++v) out.first[v + 1] += out.first[v];
-  std::vector<uint32_t> next(out.first.begin(), out.first.end() - 1);
-  for (uint32_t c = 0; c < num_corners; ++c) out.corners[next[Lower(mesh, c)]++] = c;
+  ParallelFor(num_corners, 16384, [&](size_t c) { out.corners[take(c)] = static_cast<uint32_t>(c); });
   return out;
 }
 

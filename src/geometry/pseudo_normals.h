@@ -33,4 +33,7 @@ PseudoNormals ComputePseudoNormals(const TriangleMesh& mesh, const EdgeTopology&
 // Unit normal of the triangle abc, to full double precision however thin it is; zero if it has exactly no area.
 Eigen::Vector3d AccurateNormal(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
+// The angle at a of the triangle abc, in [0, π], to full precision also where it is small or nearly π.
+double CornerAngle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+
 }  // namespace glint

@@ -15,27 +15,32 @@ std::unique_ptr<Leaf> MakeLeaf(const Eigen::Vector3i& origin, const TileDistance
   auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), openvdb::Coord(origin[0], origin[1], origin[2]),
                                      background, false);
   leaf->allocate();
-  float* to = leaf->buffer().data();
-  for (int x = 0; x < 8; ++x) {
-    const uint64_t active = distances.active[x], negative = inside[x];
-    for (int i = 0; i < 64; ++i) {
-      const float value = (active >> i & 1) ? std::abs(distances.distance[x << 6 | i]) * voxel_size : background;
-      to[x << 6 | i] = (negative >> i & 1) ? -value : value;
-    }
-    leaf->getValueMask().getWord<uint64_t>(x) = active;
-  }
+  WriteLeaf(distances, inside.data(), voxel_size, background, leaf->buffer().data());
+  for (openvdb::Index x = 0; x < 8; ++x) leaf->getValueMask().getWord<uint64_t>(x) = distances.active[x];
   return leaf;
 }
 
-// Deactivates voxels further away than the half width. False if none is left.
+// Deactivates voxels further away than the half width, and takes the sides from the distances. False if none is left.
 bool DropBeyond(float half_width, TileDistances& distances) {
   uint64_t any = 0;
   for (int x = 0; x < 8; ++x) {
-    for (int i = 0; i < 64; ++i)
-      if (!(std::abs(distances.distance[x << 6 | i]) < half_width)) distances.active[x] &= ~(uint64_t{1} << i);
+    uint64_t near = 0, inside = 0;
+    for (int i = 0; i < 64; ++i) {
+      near |= uint64_t{std::abs(distances.distance[x << 6 | i]) < half_width} << i;
+      inside |= uint64_t{std::signbit(distances.distance[x << 6 | i])} << i;
+    }
+    distances.active[x] &= near;
+    distances.inside[x] = distances.active[x] & inside;
     any |= distances.active[x];
   }
   return any != 0;
+}
+
+std::vector<uint32_t> ClosestOfActive(const TileDistances& distances) {
+  std::vector<uint32_t> closest;
+  for (int i = 0; i < kTileVoxels; ++i)
+    if (distances.active[i >> 6] >> (i & 63) & 1) closest.push_back(distances.closest[i]);
+  return closest;
 }
 
 void Add(TileCounters& sum, const TileCounters& c) {
@@ -55,10 +60,12 @@ class NoSide : public ExactSide {
 }  // namespace
 
 std::vector<std::unique_ptr<Leaf>> ComputeLeaves(const TriangleMesh& mesh, const TileBins& bins,
-                                                 const BandOptions& options, TileCounters* counters) {
+                                                 const BandOptions& options, TileCounters* counters,
+                                                 std::vector<std::vector<uint32_t>>* closest) {
   const float background = static_cast<float>(options.half_width_voxels * options.voxel_size);
   const NoSide no_side;
   std::vector<std::unique_ptr<Leaf>> leaves(bins.size());
+  if (closest) closest->assign(bins.size(), {});
   tbb::enumerable_thread_specific<TileScratch> scratches;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, bins.size(), 16), [&](const auto& range) {
     TileScratch& scratch = scratches.local();
@@ -71,13 +78,14 @@ std::vector<std::unique_ptr<Leaf>> ComputeLeaves(const TriangleMesh& mesh, const
                       bins.origin[i],
                       static_cast<float>(options.half_width_voxels + options.correction_reach),
                       options.exact != nullptr,
-                      options.correction != nullptr};
+                      options.correction != nullptr || closest != nullptr};
       ComputeTile(tile, options.exact ? *options.exact : no_side, scratch, distances);
       if (!distances.any_active) continue;
       if (options.correction) {
         options.correction->Correct(tile.origin, distances);
         if (!DropBeyond(static_cast<float>(options.half_width_voxels), distances)) continue;
       }
+      if (closest) (*closest)[i] = ClosestOfActive(distances);
       const LeafBits inside = options.signer ? options.signer->Inside(tile.origin, distances) : LeafBits{};
       leaves[i] = MakeLeaf(tile.origin, distances, inside, static_cast<float>(options.voxel_size), background);
     }

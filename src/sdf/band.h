@@ -41,8 +41,9 @@ struct BandOptions {
 };
 
 // One leaf for each tile that has an active voxel, in the order of the tiles; null for the others. Values in world
-// units.
+// units. `closest`, if given, gets the closest triangles of the active voxels of each leaf, in their order.
 std::vector<std::unique_ptr<Leaf>> ComputeLeaves(const TriangleMesh& mesh_in_index, const TileBins& bins,
-                                                 const BandOptions& options, TileCounters* counters = nullptr);
+                                                 const BandOptions& options, TileCounters* counters = nullptr,
+                                                 std::vector<std::vector<uint32_t>>* closest = nullptr);
 
 }  // namespace glint::internal

@@ -2,10 +2,10 @@
 
 #include <openvdb/tools/SignedFloodFill.h>
 
-#include <cmath>
+#include <algorithm>
+#include <utility>
 
-#include "geometry/edge_topology.h"
-#include "geometry/pseudo_normals.h"
+#include "core/parallel.h"
 #include "sdf/exact_side.h"
 #include "sdf/winding_signs.h"
 
@@ -17,11 +17,9 @@ namespace {
 class SpreadSigner : public LeafSigner {
  public:
   LeafBits Inside(const Eigen::Vector3i&, const TileDistances& distances) const override {
-    LeafBits known, inside{};
-    for (int x = 0; x < 8; ++x) {
-      known[x] = distances.active[x];
-      for (int i = 0; i < 64; ++i) inside[x] |= uint64_t{std::signbit(distances.distance[x << 6 | i])} << i;
-    }
+    LeafBits known, inside;
+    std::copy_n(distances.active, 8, known.begin());
+    std::copy_n(distances.inside, 8, inside.begin());
     return SpreadSides(known, inside);
   }
 };
@@ -29,6 +27,31 @@ class SpreadSigner : public LeafSigner {
 // Tiles take the sides of the leaves beside them.
 void FillTiles(openvdb::FloatGrid& grid) {
   openvdb::tools::signedFloodFillWithValues(grid.tree(), grid.background(), -grid.background(), true, 1, 1);
+}
+
+// The features of the active voxels of all leaves, whose closest triangles are known.
+std::vector<VoxelClosest> FindFeatures(const PreparedMesh& prepared, const std::vector<std::unique_ptr<Leaf>>& leaves,
+                                       const std::vector<std::vector<uint32_t>>& triangles) {
+  std::vector<size_t> first(leaves.size() + 1, 0);
+  for (size_t i = 0; i < leaves.size(); ++i) first[i + 1] = first[i] + (leaves[i] ? triangles[i].size() : 0);
+  std::vector<VoxelClosest> out(first.back());
+  ParallelFor(leaves.size(), 16, [&](size_t i) {
+    if (!leaves[i]) return;
+    VoxelClosest* to = out.data() + first[i];
+    const uint32_t* triangle = triangles[i].data();
+    for (auto it = leaves[i]->cbeginValueOn(); it; ++it, ++triangle) {
+      const openvdb::Coord at = it.getCoord();
+      const Eigen::Vector3i voxel(at[0], at[1], at[2]), &face = prepared.mesh.faces[*triangle];
+      const Eigen::Vector3d &a = prepared.mesh.vertices[face[0]], &b = prepared.mesh.vertices[face[1]],
+                            &c = prepared.mesh.vertices[face[2]];
+      const TrianglePoint x = ClosestOnTriangle(a, b, c, voxel.cast<double>());
+      Eigen::Vector3d weights = Barycentric(a, b, c, x.point);
+      int corner = x.corner;
+      AsGiven(prepared, x.feature, corner, weights);
+      *to++ = {voxel, prepared.source_face[*triangle], x.feature, static_cast<uint8_t>(corner), weights.cast<float>()};
+    }
+  });
+  return out;
 }
 
 }  // namespace
@@ -47,8 +70,7 @@ void BandMaker::SetCorrection(const DistanceCorrection& correction, double reach
 openvdb::FloatGrid::Ptr BandMaker::Unsigned() const { return MakeGrid(band_); }
 
 openvdb::FloatGrid::Ptr BandMaker::ByPseudoNormals() const {
-  const PseudoNormals normals = ComputePseudoNormals(prepared_.mesh, BuildEdgeTopology(prepared_.mesh));
-  const PseudoNormalSide exact(prepared_.mesh, normals);
+  const PseudoNormalSide exact(prepared_.mesh);
   const SpreadSigner signer;
   BandOptions band = band_;
   band.exact = &exact;
@@ -72,7 +94,10 @@ openvdb::FloatGrid::Ptr BandMaker::ByWinding() const {
 }
 
 openvdb::FloatGrid::Ptr BandMaker::MakeGrid(const BandOptions& band) const {
-  std::vector<std::unique_ptr<Leaf>> leaves = ComputeLeaves(prepared_.mesh, bins_, band);
+  std::vector<std::vector<uint32_t>> triangles;
+  std::vector<std::unique_ptr<Leaf>> leaves =
+      ComputeLeaves(prepared_.mesh, bins_, band, nullptr, closest_ ? &triangles : nullptr);
+  if (closest_) *closest_ = FindFeatures(prepared_, leaves, triangles);
   openvdb::FloatGrid::Ptr grid =
       openvdb::FloatGrid::create(static_cast<float>(band.half_width_voxels * band.voxel_size));
   for (auto& leaf : leaves)

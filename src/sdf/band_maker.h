@@ -3,7 +3,10 @@
 
 #include <openvdb/openvdb.h>
 
+#include <vector>
+
 #include "sdf/band.h"
+#include "sdf/mesh_to_level_set.h"
 #include "sdf/prepared_mesh.h"
 #include "sdf/tile_binning.h"
 
@@ -17,6 +20,9 @@ class BandMaker {
   // Distances are corrected by at most `reach` voxels once they are known. Kept by reference.
   void SetCorrection(const DistanceCorrection& correction, double reach);
 
+  // Filled anew by each of the functions below.
+  void SetClosest(std::vector<VoxelClosest>& closest) { closest_ = &closest; }
+
   openvdb::FloatGrid::Ptr Unsigned() const;
   openvdb::FloatGrid::Ptr ByPseudoNormals() const;
   openvdb::FloatGrid::Ptr ByWinding() const;
@@ -27,6 +33,7 @@ class BandMaker {
   const PreparedMesh& prepared_;
   BandOptions band_;
   TileBins bins_;
+  std::vector<VoxelClosest>* closest_ = nullptr;
 };
 
 }  // namespace glint::internal

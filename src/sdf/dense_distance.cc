@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "core/error.h"
-#include "geometry/edge_topology.h"
 #include "sdf/exact_side.h"
 #include "sdf/index_frame.h"
 #include "sdf/memory_budget.h"
@@ -58,8 +57,7 @@ class DenseMaker {
   DenseMaker(const internal::PreparedMesh& prepared, const std::string& sign)
       : mesh_(prepared.mesh), closest_(prepared.mesh), candidates_(closest_) {
     if (sign == "pseudonormal") {
-      normals_ = ComputePseudoNormals(mesh_, BuildEdgeTopology(mesh_));
-      exact_.emplace(mesh_, normals_);
+      exact_.emplace(mesh_);
     } else if (sign == "winding") {
       winding_.emplace(mesh_, prepared.balanced, 1.0);
     }
@@ -102,7 +100,6 @@ class DenseMaker {
   const TriangleMesh& mesh_;
   ClosestPointQuery closest_;
   internal::TileCandidates candidates_;
-  PseudoNormals normals_;
   NoSide no_side_;
   std::optional<internal::PseudoNormalSide> exact_;
   std::optional<internal::WindingSigner> winding_;

@@ -28,10 +28,10 @@ void SdfOptions::Visit(OptionVisitor& v) {
 }
 
 LevelSet MeshToLevelSet(const TriangleMesh& mesh, double voxel_size_world, const SdfOptions& options,
-                        SdfSummary* summary) {
+                        SdfSummary* summary, std::vector<VoxelClosest>* closest) {
   if (!(voxel_size_world > 0) || !std::isfinite(voxel_size_world))
     throw InputError("", "voxel size", fmt::format("expected a positive length, found {}", voxel_size_world));
-  return MeshToLevelSet(mesh, Eigen::Affine3d(Eigen::Scaling(voxel_size_world)), options, summary);
+  return MeshToLevelSet(mesh, Eigen::Affine3d(Eigen::Scaling(voxel_size_world)), options, summary, closest);
 }
 
 namespace {
@@ -77,13 +77,14 @@ openvdb::FloatGrid::Ptr MakeBand(const internal::BandMaker& maker, const interna
 }  // namespace
 
 LevelSet MeshToLevelSet(const TriangleMesh& mesh, const Eigen::Affine3d& world_from_index, const SdfOptions& options,
-                        SdfSummary* summary) {
+                        SdfSummary* summary, std::vector<VoxelClosest>* closest) {
   const double voxel_size = internal::VoxelSizeOf(world_from_index);
   const std::vector<std::string> violations = Violations(options);
   if (!violations.empty()) throw InputError("", "signed distance options", violations.front());
   const internal::PreparedMesh prepared = internal::PrepareMesh(mesh, world_from_index.inverse());
   CheckGridFits(prepared.mesh, options.half_width_voxels, options.max_memory_gb);
-  const internal::BandMaker maker(prepared, options.half_width_voxels, voxel_size);
+  internal::BandMaker maker(prepared, options.half_width_voxels, voxel_size);
+  if (closest) maker.SetClosest(*closest);
   SdfSummary story;
   story.turned = prepared.turned;
   story.degenerate_faces = prepared.collapsed_faces;

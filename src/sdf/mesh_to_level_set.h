@@ -3,9 +3,12 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/options.h"
+#include "geometry/closest_point.h"
 #include "geometry/triangle_mesh.h"
 #include "sdf/level_set.h"
 
@@ -34,15 +37,26 @@ struct SdfSummary {
   double predicted_bytes = 0;  // of the grid and the work space
 };
 
+// What an active voxel is closest to.
+struct VoxelClosest {
+  Eigen::Vector3i voxel;
+  uint32_t face;  // of the mesh given
+  Feature feature;
+  uint8_t corner;               // which edge or vertex of the face (geometry/closest_point.h); turned faces: as given
+  Eigen::Vector3f barycentric;  // weights of the face's vertices, as given
+};
+
 // Voxels at integer multiples of voxel_size_world: every value with |d| < half width is exact to float rounding and
 // active; inactive values are ± half width, negative inside (always positive for "unsigned"). Deterministic.
 // Throws InputError if the mesh is empty or has bad vertices or indices, if the voxel size is not positive and finite,
-// or if the grid would not fit in memory (the message says how much it needs).
+// or if the grid would not fit in memory (the message says how much it needs). `closest`, if given, gets one entry for
+// every active voxel, leaf by leaf; where faces are equally close to float rounding, any of them.
 LevelSet MeshToLevelSet(const TriangleMesh& mesh, double voxel_size_world, const SdfOptions& options = {},
-                        SdfSummary* summary = nullptr);
+                        SdfSummary* summary = nullptr, std::vector<VoxelClosest>* closest = nullptr);
 
 // The same with a transform of one's own: a rotation, a uniform scale and a translation.
 LevelSet MeshToLevelSet(const TriangleMesh& mesh, const Eigen::Affine3d& world_from_index,
-                        const SdfOptions& options = {}, SdfSummary* summary = nullptr);
+                        const SdfOptions& options = {}, SdfSummary* summary = nullptr,
+                        std::vector<VoxelClosest>* closest = nullptr);
 
 }  // namespace glint

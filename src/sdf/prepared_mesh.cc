@@ -32,6 +32,13 @@ PreparedMesh PrepareMesh(const TriangleMesh& mesh, const Eigen::Affine3d& index_
   return out;
 }
 
+void AsGiven(const PreparedMesh& prepared, Feature feature, int& corner, Eigen::Vector3d& weights) {
+  if (!prepared.turned) return;  // else corners 1 and 2 have been swapped, and with them edges 0 and 2
+  std::swap(weights[1], weights[2]);
+  if (feature == Feature::kVertex && corner > 0) corner = 3 - corner;
+  if (feature == Feature::kEdge) corner = 2 - corner;
+}
+
 std::string DescribeEdges(const TriangleMesh& mesh) {
   const EdgeCounts counts = CountEdges(mesh, BuildEdgeTopology(mesh));
   return fmt::format("{} boundary edges, {} non-manifold, {} whose faces disagree", counts.boundary,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/closest_point.h"
 #include "geometry/triangle_mesh.h"
 
 namespace glint::internal {
@@ -21,6 +22,9 @@ struct PreparedMesh {
 // Throws InputError for meshes that cannot be used (geometry/clean_mesh.h). Meshes that are inside out are turned, if
 // they may be.
 PreparedMesh PrepareMesh(const TriangleMesh& mesh, const Eigen::Affine3d& index_from_world, bool may_turn = true);
+
+// The corner of a feature, and the weights of a point, for a face as it was given.
+void AsGiven(const PreparedMesh& prepared, Feature feature, int& corner, Eigen::Vector3d& weights);
 
 // The edges that keep `mesh` from being balanced, in words.
 std::string DescribeEdges(const TriangleMesh& mesh);

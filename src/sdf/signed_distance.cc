@@ -63,6 +63,7 @@ SignedDistanceQuery::Result SignedDistanceQuery::FindClosest(const Eigen::Vector
   const double distance = std::sqrt(at->squared_distance);
   Result result{impl_->Inside(p, *at) ? -distance : distance, *at,
                 Barycentric(m.vertices[face[0]], m.vertices[face[1]], m.vertices[face[2]], at->point)};
+  internal::AsGiven(impl_->prepared, at->feature, result.closest.corner, result.barycentric);
   result.closest.face = static_cast<int>(impl_->prepared.source_face[at->face]);
   return result;
 }

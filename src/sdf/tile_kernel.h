@@ -42,6 +42,7 @@ class ExactSide {
 struct TileDistances {
   alignas(64) float distance[kTileVoxels];  // voxels, negative inside; only where active
   uint64_t active[8];                       // bit y << 3 | z of word x: |distance| < half width
+  uint64_t inside[8];                       // likewise: active and inside
   bool any_active;
   uint32_t closest[kTileVoxels];  // the closest triangle, to single precision; only where active and asked for
 };
@@ -60,13 +61,17 @@ struct TileScratch {
   std::vector<Pack> spheres;          // centre and radius, 4 packs a group of 16 triangles
   std::vector<Pack> frames;           // kNumCoefficients packs a group
   std::vector<Pack> squared;          // of the candidates of a block, 16 voxels each
-  std::vector<Pack> center_distance;  // of the triangles from the centre of a block
+  std::vector<Pack> center_distance;  // of the centres of all blocks from each triangle, 2 packs
   std::vector<uint32_t> tile_ids;     // the triangles by their place in the arrays above
   std::vector<uint32_t> kept, candidates, ties;
+  std::vector<uint32_t> wanted;  // of each triangle: a bit for each block that needs it
   TileCounters counters;
 };
 
 void ComputeTile(const Tile& tile, const ExactSide& exact, TileScratch& scratch, TileDistances& out);
+
+// The 512 values of a leaf: scale times the distances where active, else `background`; negative where `inside` says.
+void WriteLeaf(const TileDistances& distances, const uint64_t* inside, float scale, float background, float* to);
 
 // The instruction set in use, for reports.
 const char* TileKernelTarget();

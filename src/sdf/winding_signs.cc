@@ -11,8 +11,8 @@ namespace glint::internal {
 namespace {
 
 constexpr double kTileRadius = 6.0622;
-// The expansion of the winding number is good to about a thousandth.
-constexpr double kWindingError = 0.01;
+// The expansion of the winding number is off by less than 0.01.
+constexpr double kWindingError = 0.03;
 
 Eigen::Vector3d VoxelAt(const Eigen::Vector3i& origin, int offset) {
   return (origin + Eigen::Vector3i(offset >> 6, offset >> 3 & 7, offset & 7)).cast<double>();

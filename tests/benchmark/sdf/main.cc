@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "tests/benchmark/sdf/meshes.h"
+#include "tests/benchmark/sdf/pictures.h"
 #include "tests/benchmark/sdf/workloads.h"
 
 int main(int argc, char** argv) {
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   RunOptions options;
   bool floor = true;
   int threads = 0;
+  std::string pictures;
   app.add_option("--folder", folder, "Where the meshes are")->capture_default_str();
   app.add_option("--mesh", meshes, "Files, smooth:N, scan:N, spiky:N; all: the default set")->capture_default_str();
   app.add_option("--work", work, "band:RESOLUTION:HALF_WIDTH, dense:N, points:N")->capture_default_str();
@@ -34,9 +36,14 @@ int main(int argc, char** argv) {
   app.add_option("--scale", options.scale, "Multiply the coordinates by this");
   app.add_option("--offset", options.offset_diagonals, "Then move the mesh by so many diagonals");
   app.add_flag("!--no-floor", floor, "Do not measure the floor");
+  app.add_option("--pictures", pictures, "Only write the pictures of the documentation into this folder");
   CLI11_PARSE(app, argc, argv);
   try {
     const ThreadLimit limit(threads);
+    if (!pictures.empty()) {
+      WritePictures(pictures);
+      return 0;
+    }
     if (meshes == std::vector<std::string>{"all"}) meshes = DefaultMeshes(folder);
     PrintHeader();
     for (const std::string& name : meshes) {
