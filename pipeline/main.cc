@@ -42,6 +42,7 @@ void DeclareCommands(CLI::App& app, glint::CommandLine& line) {
   glint::AddRunCommand(app, line);
   glint::AddSynthCommand(app, line);
   glint::AddDetectCommand(app, line);
+  glint::AddLightCommand(app, line);
   glint::AddSdfCommand(app, line);
   glint::AddMeshCommand(app, line);
   glint::AddRenderCommand(app, line);

@@ -27,6 +27,7 @@ Json ToJson(const std::vector<FoundLight>& lights) {
     Json one = ToJson(found.light);
     one["support"] = found.support;
     one["determined"] = found.determined;
+    if (found.normal_sigma_deg > 0) one["normal_sigma_deg"] = found.normal_sigma_deg;
     if (!found.why.empty()) one["why"] = found.why;
     json.push_back(one);
   }
@@ -36,7 +37,6 @@ Json ToJson(const std::vector<FoundLight>& lights) {
 Json ToJson(const FindLightsSummary& find) {
   return {{"candidates", find.candidates},
           {"candidates_that_move", find.not_paint},
-          {"normal_sigma_deg", find.normal_sigma_deg},
           {"outlier_share", find.outlier_share},
           {"lights", ToJson(find.lights)}};
 }

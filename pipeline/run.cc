@@ -10,6 +10,7 @@
 #include "colmap/scene.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "highlights/check_lights.h"
 #include "io/mesh_io.h"
 #include "io/project_images.h"
 #include "io/vdb_io.h"
@@ -163,14 +164,20 @@ void Flow::Detect() {
 }
 
 void Flow::FindLightsIfUnknown(const TriangleMesh& seed, const std::vector<Highlight>& candidates) {
-  if (!lights_.empty()) {
-    WriteLights(out_.Stages() / "lights.json", lights_);
+  for (size_t k = 0; k < lights_.size(); ++k)
+    if (InsideObject(lights_[k], seed))
+      throw InputError(arguments_.lights.string(), fmt::format("light {}", k), "lies inside the object");
+  const std::vector<FoundLight> found =
+      FindLights(scene_, *images_, seed, config_.gate, config_.lights, candidates, &summary_.find_lights, terminal_);
+  terminal_.Finish();
+  if (lights_.empty()) {
+    WriteFoundLights(out_.Stages() / "lights.json", found);
+    terminal_.Info(summary_.find_lights.BriefReport());
     return;
   }
-  WriteFoundLights(out_.Stages() / "lights.json", FindLights(scene_, *images_, seed, config_.gate, config_.lights,
-                                                             candidates, &summary_.find_lights, terminal_));
-  terminal_.Finish();
-  terminal_.Info(summary_.find_lights.BriefReport());
+  WriteLights(out_.Stages() / "lights.json", lights_);
+  for (const std::string& sentence : Contradictions(lights_, found, scene_.views, BoundingBox(seed).center()))
+    terminal_.Warn(sentence);
 }
 
 // The lights given, or those that were found.

@@ -25,6 +25,7 @@ void AddCompareCommand(CLI::App& app, CommandLine& line);
 void AddConfigCommand(CLI::App& app, CommandLine& line);
 void AddDetectCommand(CLI::App& app, CommandLine& line);
 void AddInspectCommand(CLI::App& app, CommandLine& line);
+void AddLightCommand(CLI::App& app, CommandLine& line);
 void AddMeshCommand(CLI::App& app, CommandLine& line);
 void AddRenderCommand(CLI::App& app, CommandLine& line);
 void AddRunCommand(CLI::App& app, CommandLine& line);

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "highlights/check_lights.h"
 #include "highlights/paint_test.h"
 #include "highlights/seed_surface.h"
 #include "highlights/view_brightness.h"
@@ -15,12 +17,22 @@ namespace glint {
 namespace {
 
 constexpr double kMaxViewAngleDeg = 65;  // silhouettes catch the background
+constexpr int kPasses = 2;
 constexpr double kMinConditioning = 0.01;
+constexpr double kMirrorsDeg = 6;     // of a place's normal: it would show the light
+constexpr double kOneSpotRel = 0.01;  // spread of highlights that share one place's error, diagonals
+constexpr double kClearRel = 0.01;    // how far the seed may be off where it hides things from each other, diagonals
 
-// What goes dark at its place in the other views, whatever the light; indices into `candidates`.
-std::vector<size_t> NotPaint(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
-                             const GateOptions& gate, const std::vector<Highlight>& candidates, Progress& progress) {
-  std::vector<char> passed(candidates.size(), 0);
+struct Moving {
+  size_t candidate;
+  bool may_move;  // no paint either if a light moved with the camera and so shaded paint anew in every view
+};
+
+// What goes dark at its place in the other views. `moving_lights`: to try for lights that move with the camera.
+std::vector<Moving> NotPaint(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
+                             const GateOptions& gate, const std::vector<Highlight>& candidates,
+                             const std::vector<Light>& moving_lights, Progress& progress) {
+  std::vector<std::array<bool, 2>> passed(candidates.size(), {false, false});
   progress.Begin("Highlights that move", candidates.size());
   ParallelFor(candidates.size(), 16, [&](size_t i) {
     progress.ThrowIfCancelled();
@@ -33,37 +45,44 @@ std::vector<size_t> NotPaint(const Scene& scene, const ViewBrightness& brightnes
     if (samples.empty() || samples.front().off_center > 0 ||
         -ray->dot(samples.front().normal) < std::cos(kMaxViewAngleDeg * M_PI / 180))
       return;
-    const auto kept = KeptBrightness(scene, brightness, surface, nullptr, h, samples.front(),
-                                     {gate.min_half_change_deg, gate.min_other_views});
-    passed[i] = kept && *kept <= gate.paint_ratio;
+    const auto moves = [&](const Light* light) {
+      const auto kept = KeptBrightness(scene, brightness, surface, light, h, samples.front(),
+                                       {gate.min_half_change_deg, gate.min_other_views});
+      return kept && *kept <= gate.paint_ratio;
+    };
+    passed[i][0] = moves(nullptr);
+    passed[i][1] = passed[i][0] && std::all_of(moving_lights.begin(), moving_lights.end(),
+                                               [&](const Light& light) { return moves(&light); });
   });
-  std::vector<size_t> indices;
+  std::vector<Moving> moving;
   for (size_t i = 0; i < passed.size(); ++i)
-    if (passed[i]) indices.push_back(i);
-  return indices;
+    if (passed[i][0]) moving.push_back({i, passed[i][1]});
+  return moving;
 }
 
-// The strongest, and none that is much fainter than they.
-std::vector<size_t> Strongest(const std::vector<Highlight>& candidates, std::vector<size_t> indices,
+// The strongest, and none that is much fainter than they; in the order of the candidates.
+std::vector<Moving> Strongest(const std::vector<Highlight>& candidates, std::vector<Moving> moving,
                               double min_relative_strength, int max_candidates) {
-  std::stable_sort(indices.begin(), indices.end(),
-                   [&](size_t a, size_t b) { return candidates[a].strength > candidates[b].strength; });
-  if (indices.empty()) return indices;
-  const double least = min_relative_strength * candidates[indices[indices.size() / 10]].strength;
-  while (candidates[indices.back()].strength < least) indices.pop_back();
-  indices.resize(std::min(indices.size(), static_cast<size_t>(max_candidates)));
-  std::sort(indices.begin(), indices.end());
-  return indices;
+  const auto strength = [&](const Moving& m) { return candidates[m.candidate].strength; };
+  std::stable_sort(moving.begin(), moving.end(),
+                   [&](const Moving& a, const Moving& b) { return strength(a) > strength(b); });
+  if (moving.empty()) return moving;
+  const double least = min_relative_strength * strength(moving[moving.size() / 10]);
+  while (strength(moving.back()) < least) moving.pop_back();
+  moving.resize(std::min(moving.size(), static_cast<size_t>(max_candidates)));
+  std::sort(moving.begin(), moving.end(), [](const Moving& a, const Moving& b) { return a.candidate < b.candidate; });
+  return moving;
 }
 
 std::vector<LightObservation> Observe(const Scene& scene, const SeedSurface& surface,
-                                      const std::vector<Highlight>& candidates, const std::vector<size_t>& indices) {
+                                      const std::vector<Highlight>& candidates, const std::vector<Moving>& moving) {
   std::vector<LightObservation> observations;
-  for (size_t i : indices) {
-    const View& view = scene.views[candidates[i].view];
+  for (const Moving& m : moving) {
+    const Highlight& h = candidates[m.candidate];
+    const View& view = scene.views[h.view];
     // The seed's normal where the ray meets it: its neighbours' would fit almost any light.
-    const SurfaceSample at = surface.Neighbourhood(view.Center(), *view.RayThrough(candidates[i].px)).front();
-    observations.push_back({view.cam_from_world, at.position, at.normal});
+    const SurfaceSample at = surface.Neighbourhood(view.Center(), *view.RayThrough(h.px)).front();
+    observations.push_back({view.cam_from_world, at.position, at.normal, m.may_move});
   }
   return observations;
 }
@@ -78,8 +97,45 @@ LightFitOptions FitOptions(const GateOptions& gate, const FindLightsOptions& opt
   return fit;
 }
 
+// Root mean square distance of the light's highlights on the surface from their middle.
+double Spread(const std::vector<LightObservation>& observations, const std::vector<int>& assignment, int light) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double count = 0, squares = 0;
+  for (size_t i = 0; i < observations.size(); ++i)
+    if (assignment[i] == light) mean += observations[i].position, ++count;
+  if (count == 0) return 0;
+  mean /= count;
+  for (size_t i = 0; i < observations.size(); ++i)
+    if (assignment[i] == light) squares += (observations[i].position - mean).squaredNorm();
+  return std::sqrt(squares / count);
+}
+
+// Views in which the seed has a place that would mirror the light to the camera and sees both.
+int ViewsThatShouldShow(const Scene& scene, const SeedSurface& surface, const TriangleMesh& seed,
+                        const std::vector<Eigen::Vector3d>& normals, const Light& light, double max_incidence_deg) {
+  constexpr size_t kMaxPlaces = 3000;
+  const double min_cos = std::cos(max_incidence_deg * M_PI / 180), near_cos = std::cos(kMirrorsDeg * M_PI / 180);
+  const size_t stride = seed.vertices.size() / kMaxPlaces + 1;
+  std::vector<char> shows(scene.views.size(), 0);
+  ParallelFor(scene.views.size(), 1, [&](size_t v) {
+    const View& view = scene.views[v];
+    const Eigen::Vector3d center = view.Center();
+    for (size_t i = 0; i < seed.vertices.size() && !shows[v]; i += stride) {
+      const Eigen::Vector3d& x = seed.vertices[i];
+      const Eigen::Vector3d half = HalfVector(light, view.cam_from_world, x);
+      if (half.dot(normals[i]) < near_cos || half.dot((center - x).normalized()) < min_cos) continue;
+      const auto px = view.Project(x);
+      SurfaceSample at{x, normals[i]};
+      at.error_world = kClearRel * surface.diagonal();
+      const Eigen::Vector3d lamp = x + 2 * surface.diagonal() * DirectionToLight(light, view.cam_from_world, x);
+      shows[v] = px && view.Contains(*px) && !surface.Occluded(at, center) && !surface.Occluded(at, lamp);
+    }
+  });
+  return static_cast<int>(std::count(shows.begin(), shows.end(), 1));
+}
+
 // Why a light is not to be used; empty: it is determined.
-std::string WhyNot(const FoundLight& f, double diagonal, const FindLightsOptions& options) {
+std::string WhyNot(const FoundLight& f, int expected_views, double diagonal, const FindLightsOptions& options) {
   const bool distant = f.light.type == LightType::kDistant;
   const double max_sigma = distant ? options.max_sigma_deg : options.max_sigma_deg * M_PI / 180 * 5 * diagonal;
   if (f.support < options.min_support) return fmt::format("only {:.1f} highlights point to it", f.support);
@@ -88,6 +144,8 @@ std::string WhyNot(const FoundLight& f, double diagonal, const FindLightsOptions
                ? fmt::format("its direction is uncertain by {:.1f} deg", f.light.sigma)
                : fmt::format("its position is uncertain by {:.2g} diagonals of the object", f.light.sigma / diagonal);
   if (distant && f.conditioning < kMinConditioning) return "its highlights all have about the same normal";
+  if (f.support < options.min_completeness * expected_views)
+    return fmt::format("only {:.0f} highlights point to it, and {} views should show it", f.support, expected_views);
   return "";
 }
 
@@ -101,6 +159,12 @@ void FindLightsOptions::Visit(OptionVisitor& v) {
            .min = 3,
            .max = 1000},
           min_support);
+  v.Field({.name = "min_completeness",
+           .help = "Least highlights of a light, as a share of the views that should show one",
+           .unit = "ratio",
+           .min = 0,
+           .max = 1},
+          min_completeness);
   v.Field({.name = "max_sigma_deg",
            .help = "A light that is less certain is not used",
            .unit = "deg",
@@ -122,15 +186,13 @@ std::string FindLightsSummary::BriefReport() const {
                                    not_paint, candidates);
   for (const FoundLight& f : lights) {
     const bool distant = f.light.type == LightType::kDistant;
-    report += fmt::format("; {} in the {}'s frame ({:.3f}, {:.3f}, {:.3f}), {:.0f} highlights, sigma {:.2g}{}",
-                          distant ? "distant" : "point", f.light.frame == LightFrame::kWorld ? "world" : "camera",
-                          f.light.vector.x(), f.light.vector.y(), f.light.vector.z(), f.support, f.light.sigma,
-                          distant ? " deg" : "");
+    report += fmt::format(
+        "; {} in the {}'s frame ({:.3f}, {:.3f}, {:.3f}), {:.0f} highlights, sigma {:.2g}{}, normals within {:.1f} deg",
+        distant ? "distant" : "point", f.light.frame == LightFrame::kWorld ? "world" : "camera", f.light.vector.x(),
+        f.light.vector.y(), f.light.vector.z(), f.support, f.light.sigma, distant ? " deg" : "", f.normal_sigma_deg);
     if (!f.determined) report += " is not determined and not used: " + f.why;
   }
-  if (used > 0)
-    report += fmt::format("; the seed's normals disagree by {:.1f} deg, {:.0f} % explained by no light",
-                          normal_sigma_deg, 100 * outlier_share);
+  if (used > 0) report += fmt::format("; {:.0f} % explained by no light", 100 * outlier_share);
   return report;
 }
 
@@ -146,18 +208,35 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
   FindLightsSummary told;
   for (const Highlight& h : candidates) told.candidates += h.status == HighlightStatus::kAccepted;
 
-  std::vector<size_t> indices = NotPaint(scene, brightness, surface, gate, candidates, progress);
-  told.not_paint = indices.size();
-  indices = Strongest(candidates, std::move(indices), gate.min_relative_strength, options.max_candidates);
-  const LightFit fit = FitLights(Observe(scene, surface, candidates, indices), BoundingBox(seed).center(), diagonal,
-                                 FitOptions(gate, options));
-  for (FoundLight f : fit.lights) {
-    f.why = WhyNot(f, diagonal, options);
+  // A light that moves with the camera is first taken for a flash; what it really is says better how it shades paint.
+  std::vector<Light> moving_lights = {{LightType::kPoint, LightFrame::kCamera, Eigen::Vector3d::Zero(), 0}};
+  LightFit fit;
+  std::vector<LightObservation> observations;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    std::vector<Moving> moving = NotPaint(scene, brightness, surface, gate, candidates, moving_lights, progress);
+    told.not_paint = moving.size();
+    moving = Strongest(candidates, std::move(moving), gate.min_relative_strength, options.max_candidates);
+    observations = Observe(scene, surface, candidates, moving);
+    fit = FitLights(observations, BoundingBox(seed).center(), diagonal, FitOptions(gate, options));
+    moving_lights.resize(1);
+    for (const FoundLight& f : fit.lights)
+      if (f.light.frame == LightFrame::kCamera) moving_lights.push_back(f.light);
+    if (moving_lights.size() == 1) break;
+  }
+  const std::vector<Eigen::Vector3d> normals = SmoothNormals(seed);
+  for (size_t k = 0; k < fit.lights.size(); ++k) {
+    FoundLight f = fit.lights[k];
+    const int expected = ViewsThatShouldShow(scene, surface, seed, normals, f.light, gate.max_incidence_deg);
+    if (InsideObject(f.light, seed))
+      f.why = "it would lie inside the object";
+    else if (Spread(observations, fit.assignment, static_cast<int>(k)) < kOneSpotRel * diagonal)
+      f.why = "its highlights are all on one spot";
+    else
+      f.why = WhyNot(f, expected, diagonal, options);
     f.determined = f.why.empty();
     told.lights.push_back(f);
   }
   std::stable_partition(told.lights.begin(), told.lights.end(), [](const FoundLight& f) { return f.determined; });
-  told.normal_sigma_deg = fit.normal_sigma_deg;
   told.outlier_share = fit.outlier_share;
   if (summary) *summary = told;
   return told.lights;

@@ -20,7 +20,8 @@ struct PaintTestOptions {
 // about 0 for a highlight, about 1 for paint; the largest such median over depths within the seed's error along the
 // ray, since at a wrong depth paint goes dark too. Compared are the views that see the point unoccluded and in which
 // `light`'s half vector differs by at least min_half_change_deg; with a null light half of the change of the viewing
-// direction stands for it, as with a light that stands still. nullopt: fewer than min_other_views of them.
+// direction stands for it, as with a light that stands still. Under a light that moves with the camera paint is shaded
+// as Lambert has it. nullopt: fewer than min_other_views of them.
 std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
                                      const Light* light, const Highlight& highlight, const SurfaceSample& at,
                                      const PaintTestOptions& options);

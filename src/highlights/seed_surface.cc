@@ -13,8 +13,8 @@ constexpr size_t kNeighbours = 6;
 // A smooth surface leaves the facets between its points by much less than the points are apart.
 constexpr double kErrorOfSpread = 0.5;
 
-// Area-weighted vertex normals, smoothed over the one-ring a few times: the facets of a sparse seed are off by tens of
-// degrees one by one, much less on average.
+}  // namespace
+
 std::vector<Eigen::Vector3d> SmoothNormals(const TriangleMesh& mesh) {
   constexpr int kRounds = 3;
   std::vector<Eigen::Vector3d> normals(mesh.vertices.size(), Eigen::Vector3d::Zero());
@@ -33,8 +33,6 @@ std::vector<Eigen::Vector3d> SmoothNormals(const TriangleMesh& mesh) {
   }
   return normals;
 }
-
-}  // namespace
 
 SeedSurface::SeedSurface(const TriangleMesh& mesh, const std::vector<ScenePoint>& points, double max_error_world)
     : faces_(mesh.faces),

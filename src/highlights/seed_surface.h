@@ -19,6 +19,10 @@ struct SurfaceSample {
   double off_center = 0;    // how far from the central ray, fraction of the spread
 };
 
+// Area-weighted vertex normals, smoothed over the one-ring a few times: the facets of a sparse seed are off by tens of
+// degrees one by one, much less on average.
+std::vector<Eigen::Vector3d> SmoothNormals(const TriangleMesh& mesh);
+
 class SeedSurface {
  public:
   // `max_error_world`: how far the seed may be off where it is worst. Between sparse points it cannot be much worse

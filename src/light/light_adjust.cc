@@ -27,6 +27,7 @@ Eigen::Matrix3d TangentBasis(const Light& light, double diagonal) {
 int NumParameters(const Light& light) { return light.type == LightType::kDistant ? 2 : 3; }
 
 double Disagreement(const LightObservation& observation, const Light& light, double max_incidence_deg) {
+  if (observation.outlier) return M_PI;
   const Eigen::Vector3d to_camera =
       (observation.cam_from_world.Inverse().translation - observation.position).normalized();
   const Eigen::Vector3d half = HalfVector(light, observation.cam_from_world, observation.position);
@@ -35,8 +36,14 @@ double Disagreement(const LightObservation& observation, const Light& light, dou
 }
 
 LightEquations LineariseLight(const std::vector<LightObservation>& observations, const Eigen::VectorXd& weights,
-                              const Light& light, double max_incidence_deg, double diagonal) {
+                              const Light& light, double max_incidence_deg, double diagonal, double prior) {
   LightEquations equations;
+  if (prior > 0 && light.type == LightType::kPoint && light.frame == LightFrame::kCamera) {
+    const Eigen::Vector3d x = light.vector / diagonal;
+    equations.hessian = prior * Eigen::Matrix3d::Identity();
+    equations.gradient = prior * x;
+    equations.cost = prior * x.squaredNorm();
+  }
   constexpr double kStep = 1e-5;
   const int parameters = NumParameters(light);
   for (size_t i = 0; i < observations.size(); ++i) {
@@ -59,10 +66,10 @@ LightEquations LineariseLight(const std::vector<LightObservation>& observations,
 }
 
 void AdjustLight(const std::vector<LightObservation>& observations, const Eigen::VectorXd& weights,
-                 double max_incidence_deg, double diagonal, Light& light) {
+                 double max_incidence_deg, double diagonal, double prior, Light& light) {
   double lambda = 1e-3;
   for (int iteration = 0; iteration < 4; ++iteration) {
-    const LightEquations now = LineariseLight(observations, weights, light, max_incidence_deg, diagonal);
+    const LightEquations now = LineariseLight(observations, weights, light, max_incidence_deg, diagonal, prior);
     if (now.cost <= 0) return;
     const int p = NumParameters(light);
     Eigen::Matrix3d damped = now.hessian;
@@ -72,7 +79,7 @@ void AdjustLight(const std::vector<LightObservation>& observations, const Eigen:
     if (p == 2) step.z() = 0;
     step *= std::min(1.0, 0.5 / std::max(step.norm(), 1e-12));
     const Light next = Moved(light, diagonal, step);
-    if (LineariseLight(observations, weights, next, max_incidence_deg, diagonal).cost < now.cost) {
+    if (LineariseLight(observations, weights, next, max_incidence_deg, diagonal, prior).cost < now.cost) {
       light = next;
       lambda = std::max(lambda / 10, 1e-9);
       if (step.norm() < 1e-6) return;

@@ -16,17 +16,18 @@ int NumParameters(const Light& light);
 Eigen::Matrix3d TangentBasis(const Light& light, double diagonal);
 
 // Gauss-Newton equations of sum w |h - n|², h the half vector and n the normal, by central differences in the tangent
-// coordinates. Observations beyond the incidence limit do not count.
+// coordinates. Observations beyond the incidence limit do not count. To the cost of a point light in the camera's frame
+// `prior` times its squared distance from the camera, in diagonals, is added.
 struct LightEquations {
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   double cost = 0;
 };
 LightEquations LineariseLight(const std::vector<LightObservation>& observations, const Eigen::VectorXd& weights,
-                              const Light& light, double max_incidence_deg, double diagonal);
+                              const Light& light, double max_incidence_deg, double diagonal, double prior);
 
 // A few damped Gauss-Newton steps.
 void AdjustLight(const std::vector<LightObservation>& observations, const Eigen::VectorXd& weights,
-                 double max_incidence_deg, double diagonal, Light& light);
+                 double max_incidence_deg, double diagonal, double prior, Light& light);
 
 }  // namespace glint

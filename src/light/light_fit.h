@@ -15,6 +15,8 @@ struct LightObservation {
   Rigid3d cam_from_world;
   Eigen::Vector3d position;
   Eigen::Vector3d normal;  // unit, outward
+  bool may_move = true;    // false: an outlier if there is a light that moves with the camera
+  bool outlier = false;    // supports no light
 };
 
 struct LightFitOptions {
@@ -37,7 +39,9 @@ struct LightFit {
 // A mixture of lights and uniform outliers on the normals, l = 2 (n·v) n − v [DESIGN 3.3]: lights are added one by one
 // from the best of a grid of directions in the world's and in the camera's frame and the camera itself (flash),
 // refined by expectation maximisation, and kept while the Bayesian information criterion falls; then each is tried as
-// a near one. `center`, `diagonal`: of the object, for the scale of positions.
+// a near one. That some light moves with the camera is a hypothesis of its own: then all that may be paint under such
+// a light counts as outliers. A point light in the camera's frame is expected near the camera. `center`, `diagonal`: of
+// the object, for the scale of positions.
 LightFit FitLights(const std::vector<LightObservation>& observations, const Eigen::Vector3d& center, double diagonal,
                    const LightFitOptions& options);
 

@@ -43,7 +43,7 @@ std::vector<Light> LikelyDirections(const std::vector<LightObservation>& observa
   for (size_t g : order) {
     if (static_cast<int>(chosen.size()) == count) break;
     const bool apart = std::all_of(chosen.begin(), chosen.end(),
-                                   [&](size_t c) { return grid[c].dot(grid[g]) < std::cos(20 * M_PI / 180); });
+                                   [&](size_t c) { return grid[c].dot(grid[g]) < std::cos(2.5 * sigma); });
     if (!apart) continue;
     chosen.push_back(g);
     starts.push_back({LightType::kDistant, frame, grid[g], 0});

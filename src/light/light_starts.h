@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// The distant lights (at most `count`, more than 20 degrees apart) of a grid over all directions that the weighted
+// The distant lights (at most `count`, more than 2.5 `sigma` apart) of a grid over all directions that the weighted
 // observations vote for most, each with a Gaussian of `sigma` radians about its normal.
 std::vector<Light> LikelyDirections(const std::vector<LightObservation>& observations, const Eigen::VectorXd& weights,
                                     LightFrame frame, double max_incidence_deg, double sigma, int count);

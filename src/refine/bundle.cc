@@ -77,13 +77,14 @@ double Median(std::vector<double> values) {
 class Solver {
  public:
   Solver(const std::vector<SurfacePoint>& points, double diagonal, const std::vector<bool>& solve_lights,
-         const BundleOptions& options, std::vector<Contact>& contacts, std::vector<Light>& lights)
+         const BundleOptions& options, std::vector<Contact>& contacts, std::vector<Light>& lights,
+         const std::vector<Light>& known_lights)
       : points_(points),
         diagonal_(diagonal),
         solve_lights_(solve_lights),
         options_(options),
         lights_(lights),
-        given_lights_(lights) {
+        given_lights_(known_lights) {
     for (Contact& contact : contacts)
       if (contact.accepted) contacts_.push_back(&contact);
   }
@@ -356,11 +357,13 @@ void Solver::Finish(BundleSummary& summary) {
 
 BundleSummary SolveBundle(const std::vector<SurfacePoint>& points, double diagonal,
                           const std::vector<bool>& solve_lights, const BundleOptions& options,
-                          std::vector<Contact>& contacts, std::vector<Light>& lights) {
+                          std::vector<Contact>& contacts, std::vector<Light>& lights,
+                          const std::vector<Light>* known_lights) {
   GLINT_CHECK_EQ(solve_lights.size(), lights.size());
+  GLINT_CHECK(!known_lights || known_lights->size() == lights.size());
   GLINT_CHECK_GT(diagonal, 0);
   for (const Contact& contact : contacts) GLINT_CHECK_LT(contact.light, static_cast<int>(lights.size()));
-  Solver solver(points, diagonal, solve_lights, options, contacts, lights);
+  Solver solver(points, diagonal, solve_lights, options, contacts, lights, known_lights ? *known_lights : lights);
   solver.RememberOrder();
   return solver.Run();
 }

@@ -51,9 +51,11 @@ struct BundleSummary {
 };
 
 // Moves `contacts` (depth, sigma_depth, accepted) and, where solve_lights[k] is set, `lights[k]`. `diagonal` is the
-// object's bounding-box diagonal in world units. Deterministic.
+// object's bounding-box diagonal in world units. A solved light with a sigma is held to `known_lights` (null: to where
+// it starts), so that solving again and again does not let it drift. Deterministic.
 BundleSummary SolveBundle(const std::vector<SurfacePoint>& points, double diagonal,
                           const std::vector<bool>& solve_lights, const BundleOptions& options,
-                          std::vector<Contact>& contacts, std::vector<Light>& lights);
+                          std::vector<Contact>& contacts, std::vector<Light>& lights,
+                          const std::vector<Light>* known_lights = nullptr);
 
 }  // namespace glint

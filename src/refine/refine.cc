@@ -101,6 +101,7 @@ class Refiner {
       lights_.push_back(frame_.FromWorld(light));
       solve_lights_.push_back(options.lights == "solve" || (options.lights == "auto" && light.sigma > 0));
     }
+    known_lights_ = lights_;
     if (options.use_highlights)
       for (const Contact& contact : MakeContacts(input.scene, input.highlights, options.contacts))
         contacts_.push_back(frame_.FromWorld(contact));
@@ -136,7 +137,7 @@ class Refiner {
   Progress& progress_;
   const UnitFrame frame_;
   TriangleMesh seed_, surface_;
-  std::vector<Light> lights_;
+  std::vector<Light> lights_, known_lights_;
   std::vector<bool> solve_lights_;
   std::vector<Contact> contacts_;
   std::vector<uint8_t> misfit_;  // a contact: was left out for its size
@@ -188,7 +189,7 @@ double Refiner::UpdateContacts(const LevelSet& field, IterationSummary& iteratio
   RejectMisfits(field, caster);
   std::vector<double> before, motion;
   for (const Contact& contact : contacts_) before.push_back(contact.depth);
-  iteration.bundle = SolveBundle(points_, 1.0, solve_lights_, options_.bundle, contacts_, lights_);
+  iteration.bundle = SolveBundle(points_, 1.0, solve_lights_, options_.bundle, contacts_, lights_, &known_lights_);
   for (size_t i = 0; i < contacts_.size(); ++i)
     if (contacts_[i].accepted) motion.push_back(std::abs(contacts_[i].depth - before[i]));
   return Median(motion);

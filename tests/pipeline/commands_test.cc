@@ -44,7 +44,8 @@ TEST_F(Commands, VersionAndHelp) {
   EXPECT_THAT(version.out, HasSubstr("glint " GLINT_VERSION));
   const ProgramResult help = RunGlint({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "synth", "detect", "sdf", "mesh", "render", "compare", "inspect", "config"})
+  for (const char* command :
+       {"run", "synth", "detect", "sdf", "mesh", "render", "compare", "inspect", "light", "config"})
     EXPECT_THAT(help.out, HasSubstr(command));
 }
 

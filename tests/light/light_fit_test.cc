@@ -1,0 +1,175 @@
+#include "light/light_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+namespace glint {
+namespace {
+
+double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI;
+}
+
+// Cameras on a dome around a sphere of radius one at `center`; every light shows one highlight a view.
+struct Simulated {
+  Eigen::Vector3d center{0.4, -1, 2};
+  double scale = 1;
+  std::mt19937 random{7};
+
+  Rigid3d Camera(int k, int count) const {
+    const double azimuth = 2 * M_PI * k / count, elevation = 0.3 + 0.6 * ((k * 7) % count) / count;
+    const Eigen::Vector3d out(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+                              std::sin(elevation));
+    Eigen::Matrix3d rotation;  // rows: the camera's axes in the world
+    rotation.row(2) = -out;
+    rotation.row(0) = Eigen::Vector3d::UnitZ().cross(out).normalized();
+    rotation.row(1) = rotation.row(2).cross(rotation.row(0));
+    Rigid3d cam_from_world;
+    cam_from_world.rotation = Eigen::Quaterniond(rotation);
+    cam_from_world.translation = -rotation * (scale * center + 4 * scale * out);
+    return cam_from_world;
+  }
+
+  // The observation of a light, with the seed's normal off by `sigma_deg`; none where the sphere hides it.
+  void Add(std::vector<LightObservation>& observations, const Light& light, double sigma_deg, int views = 40) {
+    std::normal_distribution<double> noise(0, sigma_deg * M_PI / 180);
+    for (int k = 0; k < views; ++k) {
+      const Rigid3d cam = Camera(k, views);
+      Eigen::Vector3d n = (cam.Inverse().translation - scale * center).normalized();
+      for (int i = 0; i < 100; ++i) n = HalfVector(light, cam, scale * (center + n));
+      const Eigen::Vector3d x = scale * (center + n);
+      if (n.dot((cam.Inverse().translation - x).normalized()) < std::cos(60 * M_PI / 180)) continue;
+      const Eigen::Vector3d e1 = n.unitOrthogonal(), e2 = n.cross(e1);
+      observations.push_back({cam, x, (n + noise(random) * e1 + noise(random) * e2).normalized()});
+    }
+  }
+
+  // Paint: anywhere on the sphere that the camera sees.
+  void AddPaint(std::vector<LightObservation>& observations, int count) {
+    std::normal_distribution<double> normal;
+    while (count > 0) {
+      const Rigid3d cam = Camera(count % 40, 40);
+      const Eigen::Vector3d n = Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+      if (n.dot((cam.Inverse().translation - scale * (center + n)).normalized()) < 0.4) continue;
+      observations.push_back({cam, scale * (center + n), n});
+      --count;
+    }
+  }
+
+  LightFit Fit(const std::vector<LightObservation>& observations, const LightFitOptions& options = {}) const {
+    return FitLights(observations, scale * center, 3.46 * scale, options);
+  }
+};
+
+Light Distant(const Eigen::Vector3d& direction, LightFrame frame = LightFrame::kWorld) {
+  return {LightType::kDistant, frame, direction.normalized(), 0};
+}
+
+TEST(FitLights, TwoDistantLightsAmongPaintWithNoisyNormals) {
+  Simulated scene;
+  const Light a = Distant({0.6, -0.5, 0.7}), b = Distant({-0.3, 0.5, 0.8});
+  std::vector<LightObservation> observations;
+  scene.Add(observations, a, 6);
+  scene.Add(observations, b, 6);
+  scene.AddPaint(observations, 30);
+  const LightFit fit = scene.Fit(observations);
+  ASSERT_EQ(fit.lights.size(), 2u);
+  for (const FoundLight& f : fit.lights) {
+    EXPECT_EQ(f.light.type, LightType::kDistant);
+    EXPECT_EQ(f.light.frame, LightFrame::kWorld);
+    const double error = std::min(AngleDeg(f.light.vector, a.vector), AngleDeg(f.light.vector, b.vector));
+    EXPECT_LT(error, 5);
+    EXPECT_LT(error, 3 * f.light.sigma);
+    EXPECT_LT((f.covariance * f.light.vector).norm(), 1e-9);  // none along the direction
+    EXPECT_GT(f.criterion_gain, 10);
+  }
+}
+
+TEST(FitLights, ANearLightIsToldFromADistantOne) {
+  Simulated scene;
+  const Light near{LightType::kPoint, LightFrame::kWorld, scene.center + Eigen::Vector3d(1.2, -1.6, 2.2), 0};
+  std::vector<LightObservation> observations;
+  scene.Add(observations, near, 1.5);
+  const LightFit fit = scene.Fit(observations);
+  ASSERT_EQ(fit.lights.size(), 1u);
+  EXPECT_EQ(fit.lights[0].light.type, LightType::kPoint);
+  EXPECT_LT((fit.lights[0].light.vector - near.vector).norm(), 0.4);
+
+  std::vector<LightObservation> far;
+  scene.Add(far, Distant({1.2, -1.6, 2.2}), 1.5);
+  const LightFit distant = scene.Fit(far);
+  ASSERT_EQ(distant.lights.size(), 1u);
+  EXPECT_EQ(distant.lights[0].light.type, LightType::kDistant);
+}
+
+TEST(FitLights, AFlashAndALightThatTurnsWithTheCamera) {
+  Simulated scene;
+  std::vector<LightObservation> flash, turning;
+  scene.Add(flash, {LightType::kPoint, LightFrame::kCamera, {0.2, -0.3, 0}, 0}, 3);
+  scene.AddPaint(flash, 10);
+  const LightFit a = scene.Fit(flash);
+  ASSERT_EQ(a.lights.size(), 1u);
+  EXPECT_EQ(a.lights[0].light.type, LightType::kPoint);
+  EXPECT_EQ(a.lights[0].light.frame, LightFrame::kCamera);
+
+  const Light beside = Distant({0.7, -0.3, -0.6}, LightFrame::kCamera);
+  scene.Add(turning, beside, 3);
+  const LightFit b = scene.Fit(turning);
+  ASSERT_EQ(b.lights.size(), 1u);
+  EXPECT_EQ(b.lights[0].light.type, LightType::kDistant);
+  EXPECT_EQ(b.lights[0].light.frame, LightFrame::kCamera);
+  EXPECT_LT(AngleDeg(b.lights[0].light.vector, beside.vector), 3);
+}
+
+TEST(FitLights, WhatMayBePaintUnderAMovingLightSpeaksForNone) {
+  Simulated scene;
+  std::vector<LightObservation> observations;
+  scene.Add(observations, Distant({0.7, -0.3, -0.6}, LightFrame::kCamera), 2);
+  const size_t honest = observations.size();
+  // One mark that faces all cameras on one side looks like a light.
+  for (int k = 0; k < 12; ++k) {
+    LightObservation o = observations[k];
+    o.normal = Eigen::Vector3d(1, 0.2, 0.4).normalized();
+    o.position = scene.center + o.normal;
+    o.may_move = false;
+    observations.push_back(o);
+  }
+  const LightFit fit = scene.Fit(observations);
+  ASSERT_EQ(fit.lights.size(), 1u);
+  EXPECT_EQ(fit.lights[0].light.frame, LightFrame::kCamera);
+  for (size_t i = honest; i < observations.size(); ++i) EXPECT_EQ(fit.assignment[i], -1);
+}
+
+TEST(FitLights, DoesNotDependOnTheScale) {
+  for (const double scale : {1e-6, 1e6}) {
+    Simulated scene;
+    scene.scale = scale;
+    std::vector<LightObservation> observations;
+    scene.Add(observations,
+              {LightType::kPoint, LightFrame::kWorld, scale * (scene.center + Eigen::Vector3d(1, 1, 2)), 0}, 1.5);
+    const LightFit fit = scene.Fit(observations);
+    ASSERT_EQ(fit.lights.size(), 1u) << scale;
+    EXPECT_EQ(fit.lights[0].light.type, LightType::kPoint);
+    EXPECT_LT((fit.lights[0].light.vector / scale - scene.center - Eigen::Vector3d(1, 1, 2)).norm(), 0.4);
+  }
+}
+
+TEST(FitLights, NothingOneAndAllInOnePlace) {
+  Simulated scene;
+  EXPECT_TRUE(scene.Fit({}).lights.empty());
+  std::vector<LightObservation> observations;
+  scene.Add(observations, Distant({0.6, -0.5, 0.7}), 1);
+  EXPECT_TRUE(scene.Fit({observations[0]}).lights.empty());
+  // The same place seen by one camera again and again: whatever is found says how little it is worth.
+  const std::vector<LightObservation> same(30, observations[0]);
+  for (const FoundLight& f : scene.Fit(same).lights) EXPECT_GT(f.support, 0);
+  std::vector<LightObservation> paint;
+  scene.AddPaint(paint, 40);
+  EXPECT_TRUE(scene.Fit(paint).lights.empty());
+}
+
+}  // namespace
+}  // namespace glint
