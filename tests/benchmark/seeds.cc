@@ -3,6 +3,7 @@
 // against the truth where a camera sees it (distances from the truth's vertices in % of its diagonal, normals in
 // degrees) and everywhere, what became of the virtual points, and seconds of processor time.
 //   seeds [--scenes a,b] [--points 30,100] [--virtual 0,30] [--lights N] [--seed S] [--vase DIR] [--out DIR]
+//   seeds --projects DIR,DIR [--out DIR]
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +17,7 @@
 #include <random>
 
 #include "colmap/model.h"
+#include "colmap/project.h"
 #include "colmap/scene.h"
 #include "core/error.h"
 #include "geometry/closest_point.h"
@@ -62,6 +64,7 @@ void WritePicture(const fs::path& path, const Case& c, const SeedResult& seed) {
     const View& view = c.scene.views[c.scene.views.size() * i / kViews];
     std::vector<cv::Mat> row;
     for (const TriangleMesh* mesh : {&c.truth, &seed.mesh, &seed.smooth}) {
+      if (mesh->empty()) continue;
       TriangleMesh shown = *mesh;
       EnsureNormals(shown);
       row.push_back(RenderMesh(shown, view, kWidth));
@@ -257,6 +260,26 @@ Case VaseCase(const Vase& vase, size_t points, double virtual_share) {
   return c;
 }
 
+// A project without a truth: whether it gives a closed seed, and what of.
+void MeasureProject(const fs::path& folder, const fs::path& out) {
+  try {
+    const Scene scene = MakeScene(ReadModel(FindProject(folder).model));
+    const Case c{folder.filename().string(), scene, std::vector<Kind>(scene.points.size(), Kind::kSurroundings), {}};
+    SeedSummary summary;
+    const SeedResult seed = BuildSeed(scene, {}, &summary);
+    const bool closed = !seed.smooth.empty() && CheckMeshSoundness(seed.smooth, {.self_intersections = false}).closed;
+    fmt::print("{}: {}; {}\n", c.name, closed ? "closed" : "NOT CLOSED", summary.BriefReport());
+    if (out.empty() || seed.smooth.empty()) return;
+    fs::create_directories(out);
+    WriteMesh(out / (c.name + "-seed.ply"), seed.mesh);
+    WriteMesh(out / (c.name + "-start.ply"), seed.smooth);
+    WritePicture(out / (c.name + ".png"), c, seed);
+  } catch (const Error& error) {
+    fmt::print("{}: {}\n", folder.string(), error.what());
+  }
+  std::fflush(stdout);
+}
+
 int Main(int argc, char** argv) {
   CLI::App app("Quality of the seed on synthetic scenes and the vase");
   std::vector<std::string> scenes;
@@ -266,6 +289,7 @@ int Main(int argc, char** argv) {
   SyntheticOptions options;
   options.lights = 2;
   fs::path vase_folder, out;
+  std::vector<fs::path> projects;
   app.add_option("--scenes", scenes, "scenes to measure; 'none' for none")->delimiter(',');
   app.add_option("--points", points, "points on the object")->delimiter(',');
   app.add_option("--virtual", virtual_percent, "virtual points, % of those on the object")->delimiter(',');
@@ -273,8 +297,11 @@ int Main(int argc, char** argv) {
   app.add_option("--views", options.views, "views");
   app.add_option("--seed", options.seed, "random seed of the scenes");
   app.add_option("--vase", vase_folder, "folder of the vase");
+  app.add_option("--projects", projects, "projects without a truth, measured alone")->delimiter(',');
   app.add_option("--out", out, "folder to keep the meshes in");
   CLI11_PARSE(app, argc, argv);
+  for (const fs::path& project : projects) MeasureProject(project, out);
+  if (!projects.empty()) return 0;
   PrintHeader();
   for (const std::string& scene : scenes)
     for (const int count : points)
