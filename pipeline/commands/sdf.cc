@@ -12,6 +12,7 @@
 #include "pipeline/commands/command.h"
 #include "pipeline/commands/option_flags.h"
 #include "pipeline/terminal.h"
+#include "sdf/memory_budget.h"
 #include "sdf/mesh_to_level_set.h"
 
 namespace glint {
@@ -32,6 +33,8 @@ void MakeField(const Arguments& arguments, Terminal& terminal) {
   const double voxel =
       arguments.resolution > 0 ? extent.maxCoeff() / arguments.resolution : arguments.voxel_rel * Diagonal(mesh);
   if (!(voxel > 0)) throw InputError(arguments.mesh, "", "the mesh has no extent: all its vertices coincide");
+  terminal.Info(fmt::format("{} faces, voxels of {:g}: about {:.3g} GB of memory", mesh.faces.size(), voxel,
+                            PredictBandBytes(mesh, arguments.options.half_width_voxels, voxel) / 1e9));
   terminal.Begin("signed distance", 0);
   SdfSummary summary;
   const LevelSet field = MeshToLevelSet(mesh, voxel, arguments.options, &summary);

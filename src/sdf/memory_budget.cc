@@ -27,12 +27,12 @@ double FreeBytes() {
 
 }  // namespace
 
-double PredictBandBytes(const TriangleMesh& mesh, double half_width_voxels) {
+double PredictBandBytes(const TriangleMesh& mesh, double half_width_voxels, double voxel_size) {
   const Eigen::AlignedBox3d box = BoundingBox(mesh);
   const double reach = half_width_voxels;
-  const Eigen::Array3d extent = box.sizes().array() + 2 * reach;
+  const Eigen::Array3d extent = box.sizes().array() / voxel_size + 2 * reach;
   // The band's volume, at most that of the box; a surface of area A crosses leaves in a slab of about their size.
-  const double slab = SurfaceArea(mesh) * (2 * reach + 8) + 8 * std::pow(reach + 4, 3);
+  const double slab = SurfaceArea(mesh) / (voxel_size * voxel_size) * (2 * reach + 8) + 8 * std::pow(reach + 4, 3);
   const double leaves = std::min(slab, (extent + 8).prod()) / 512;
   return leaves * kLeafBytes + static_cast<double>(mesh.faces.size()) * kBytesPerTriangle;
 }

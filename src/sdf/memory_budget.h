@@ -7,8 +7,9 @@
 
 namespace glint {
 
-// Bytes that the narrow band of `mesh_in_index` (coordinates in voxels) will need at least, grid and work space.
-double PredictBandBytes(const TriangleMesh& mesh_in_index, double half_width_voxels);
+// Bytes that the narrow band of a mesh will need, about, grid and work space. voxel_size is 1 for coordinates in
+// voxels.
+double PredictBandBytes(const TriangleMesh& mesh, double half_width_voxels, double voxel_size = 1);
 
 // Throws InputError if the coordinates do not fit OpenVDB's 32-bit indices or if the prediction exceeds
 // max_memory_gb (0: the memory that is free now).

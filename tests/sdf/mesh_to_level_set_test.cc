@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "sdf/level_set_impl.h"
+#include "sdf/memory_budget.h"
 #include "tests/geometry/test_meshes.h"
 #include "tests/sdf/brute_force.h"
 
@@ -227,6 +228,19 @@ TEST(MeshToLevelSet, BadInputIsRefused) {
   EXPECT_THROW(MeshToLevelSet(bad, 0.1), InputError);
   // Far from the origin in units of voxels: 32-bit indices end.
   EXPECT_THROW(MeshToLevelSet(testing::Transformed(box, 1, {1e9, 0, 0}), 0.1), InputError);
+}
+
+// The memory is said before it is taken, and about right.
+TEST(MeshToLevelSet, MemoryIsPredicted) {
+  const TriangleMesh sphere = testing::Icosphere(5);
+  SdfSummary summary;
+  const LevelSet level_set = MeshToLevelSet(sphere, 0.01, {}, &summary);
+  const double grid = static_cast<double>(level_set.memory_bytes());
+  EXPECT_GT(summary.predicted_bytes, grid);
+  EXPECT_LT(summary.predicted_bytes, 3 * grid);
+  EXPECT_NEAR(PredictBandBytes(sphere, 3, 0.01), summary.predicted_bytes, 1e-6 * grid);
+  EXPECT_THROW(MeshToLevelSet(sphere, 0.01, {.max_memory_gb = 1e-3}), InputError);
+  EXPECT_THROW(MeshToLevelSet(sphere, 1e-5, {}), InputError);
 }
 
 TEST(MeshToLevelSet, OneTriangle) {
