@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "tests/benchmark/sdf/growth.h"
 #include "tests/benchmark/sdf/meshes.h"
 #include "tests/benchmark/sdf/pictures.h"
 #include "tests/benchmark/sdf/workloads.h"
@@ -23,7 +24,7 @@ int main(int argc, char** argv) {
   RunOptions options;
   bool floor = true;
   int threads = 0;
-  std::string pictures;
+  std::string pictures, growth;
   app.add_option("--folder", folder, "Where the meshes are")->capture_default_str();
   app.add_option("--mesh", meshes, "Files, smooth:N, scan:N, spiky:N; all: the default set")->capture_default_str();
   app.add_option("--work", work, "band:RESOLUTION:HALF_WIDTH, dense:N, points:N")->capture_default_str();
@@ -37,9 +38,14 @@ int main(int argc, char** argv) {
   app.add_option("--offset", options.offset_diagonals, "Then move the mesh by so many diagonals");
   app.add_flag("!--no-floor", floor, "Do not measure the floor");
   app.add_option("--pictures", pictures, "Only write the pictures of the documentation into this folder");
+  app.add_option("--growth", growth, "Only measure the growth with triangles and voxels, and plot it into this PNG");
   CLI11_PARSE(app, argc, argv);
   try {
     const ThreadLimit limit(threads);
+    if (!growth.empty()) {
+      PlotGrowth(growth);
+      return 0;
+    }
     if (!pictures.empty()) {
       WritePictures(pictures);
       return 0;
