@@ -144,6 +144,8 @@ std::string WhyNot(const FoundLight& f, int expected_views, double diagonal, con
                ? fmt::format("its direction is uncertain by {:.1f} deg", f.light.sigma)
                : fmt::format("its position is uncertain by {:.2g} diagonals of the object", f.light.sigma / diagonal);
   if (distant && f.conditioning < kMinConditioning) return "its highlights all have about the same normal";
+  if (f.normal_sigma_deg > options.max_normal_sigma_deg)
+    return fmt::format("the surface's normals agree with it to {:.1f} deg only", f.normal_sigma_deg);
   if (f.support < options.min_completeness * expected_views)
     return fmt::format("only {:.0f} highlights point to it, and {} views should show it", f.support, expected_views);
   return "";
@@ -165,6 +167,13 @@ void FindLightsOptions::Visit(OptionVisitor& v) {
            .min = 0,
            .max = 1},
           min_completeness);
+  v.Field(
+      {.name = "max_normal_sigma_deg",
+       .help = "A light that the seed's normals agree with no better is not used: print agrees with any light a little",
+       .unit = "deg",
+       .min = 0.1,
+       .max = 90},
+      max_normal_sigma_deg);
   v.Field({.name = "max_sigma_deg",
            .help = "A light that is less certain is not used",
            .unit = "deg",

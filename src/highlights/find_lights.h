@@ -19,6 +19,7 @@ struct FindLightsOptions {
   int max_lights = 6;
   int min_support = 5;
   double min_completeness = 0.4;
+  double max_normal_sigma_deg = 5;
   double max_sigma_deg = 15;
   std::string kinds = "any";
   int max_candidates = 600;
