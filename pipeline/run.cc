@@ -121,6 +121,7 @@ void Flow::Prepare() {
   terminal_.LogTo(out_.Log());
   summary_.command = arguments_.command;
   if (!arguments_.lights.empty()) lights_ = ReadLights(arguments_.lights);
+  for (const Light& light : lights_) found_.emplace_back().light = light;
   summary_.lights_given = lights_;
   WriteFileAtomically(out_.Config(), ConfigYaml(config_, "The options of this run, as resolved."));
 }
@@ -186,8 +187,6 @@ void Flow::TakeLights(const std::vector<Highlight>& candidates) {
     found_ = ReadFoundLights(out_.Stages() / "lights.json");
     for (const FoundLight& found : found_)
       if (found.determined) lights_.push_back(found.light);
-  } else {
-    for (const Light& light : lights_) found_.emplace_back().light = light;
   }
   summary_.lights = found_;
   if (!lights_.empty()) return;
@@ -232,7 +231,7 @@ void Flow::WriteHighlightPictures(const std::vector<Highlight>& highlights) {
 void Flow::TakeRefined(const RefineResult& refined, size_t k) {
   FoundLight& found = found_[k];
   found.light = refined.lights[k];
-  if (refined.summary.iterations.empty()) return;
+  if (refined.summary.iterations.empty() || refined.summary.iterations.back().bundle.lights.size() <= k) return;
   const BundleLightUpdate& update = refined.summary.iterations.back().bundle.lights[k];
   found.support = update.contacts;
   if (update.sigma <= 0) return;

@@ -33,9 +33,9 @@ namespace {
 
 bool SetAxisRays(const View& view, const Highlight& highlight, Contact& contact) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(highlight.moments_px);
-  for (int k = 0; k < 2; ++k) {
-    const double length_px = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));
-    const auto ray = view.RayThrough(highlight.px + length_px * axes.eigenvectors().col(k));
+  for (int k = 0; k < 4; ++k) {
+    const double length_px = (k % 2 ? -1 : 1) * std::sqrt(std::max(axes.eigenvalues()[k / 2], 0.0));
+    const auto ray = view.RayThrough(highlight.px + length_px * axes.eigenvectors().col(k / 2));
     if (!ray) return false;
     contact.axis_rays[k] = *ray;
   }

@@ -26,11 +26,11 @@ struct Contact {
   double prior_depth = 0;     // depth at which the ray meets the current surface
   // Of the current surface where the ray meets it; zero: not to be relied on.
   Eigen::Vector3d surface_normal = Eigen::Vector3d::Zero();
-  double sigma_normal = 0;    // standard deviation of the normal
-  double sigma_depth = 0;     // from the bundle's covariance; 0: not known yet
-  double pixel_angle = 0;     // angle that the peak's standard deviation in pixels subtends
-  // Rays through the ends of the blob's two axes, one standard deviation from the peak; unit.
-  std::array<Eigen::Vector3d, 2> axis_rays;
+  double sigma_normal = 0;  // standard deviation of the normal
+  double sigma_depth = 0;   // from the bundle's covariance; 0: not known yet
+  double pixel_angle = 0;   // angle that the peak's standard deviation in pixels subtends
+  // Rays through the ends of the blob's two axes, one standard deviation from the peak: +a, -a, +b, -b; unit.
+  std::array<Eigen::Vector3d, 4> axis_rays;
   bool accepted = true;
   HighlightStatus reason = HighlightStatus::kInconsistent;  // where it is not accepted
 

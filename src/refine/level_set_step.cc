@@ -40,6 +40,11 @@ void LevelSetOptions::Visit(OptionVisitor& v) {
 
 namespace {
 
+// Standard deviation of a contact's footprint: a share of the distance to the next contacts.
+constexpr double kFootprintShare = 0.1;
+constexpr double kLeastFootprintVoxels = 0.6;
+constexpr double kFootprintReach = 2.2;  // standard deviations
+
 // Weights of a squared residual in standard deviations. Contacts: Cauchy, they were judged in the bundle already.
 // Points: Geman and McClure, which lets go of the few that lie centimetres off.
 double ContactWeight(double squared) { return 1 / (1 + squared / 4); }
@@ -70,22 +75,71 @@ bool AddValueRow(const Band& band, const Eigen::Vector3d& x, double weight, Band
   return true;
 }
 
-// Central differences at the eight voxels around x, blended: second order in h, unlike the trilinear derivative.
-bool AddGradientRows(const Band& band, const Eigen::Vector3d& x, const Eigen::Vector3d& normal, double weight,
-                     BandRows& rows) {
+struct Tap {
+  int32_t voxel;
+  double weight;
+};
+
+bool HasAllNeighbors(const Band& band, int32_t voxel) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side)
+      if (band.Neighbor(voxel, axis, side) == Band::kNone) return false;
+  return true;
+}
+
+// Voxels of a ball about x with Gaussian weights that sum to 1; empty if none has all its neighbours.
+std::vector<Tap> GaussianTaps(const Band& band, const Eigen::Vector3d& x, double sigma_voxels) {
+  const Eigen::Vector3d center = band.ToIndexSpace(x);
+  const double reach = kFootprintReach * sigma_voxels;
+  const Eigen::Vector3i low = (center.array() - reach).ceil().cast<int>();
+  const Eigen::Vector3i high = (center.array() + reach).floor().cast<int>();
+  std::vector<Tap> taps;
+  double sum = 0;
+  for (int i = low[0]; i <= high[0]; ++i)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int k = low[2]; k <= high[2]; ++k) {
+        const double squared = (Eigen::Vector3d(i, j, k) - center).squaredNorm();
+        if (squared > reach * reach) continue;
+        const int32_t v = band.Find({i, j, k});
+        if (v == Band::kNone || !HasAllNeighbors(band, v)) continue;
+        taps.push_back({v, std::exp(-0.5 * squared / (sigma_voxels * sigma_voxels))});
+        sum += taps.back().weight;
+      }
+  for (Tap& tap : taps) tap.weight /= sum;
+  return taps;
+}
+
+Eigen::Vector3d GradientOf(const Band& band, const std::vector<Tap>& taps) {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  for (const Tap& tap : taps)
+    for (int axis = 0; axis < 3; ++axis)
+      gradient[axis] +=
+          tap.weight * (band.phi()[band.Neighbor(tap.voxel, axis, 1)] - band.phi()[band.Neighbor(tap.voxel, axis, 0)]);
+  return gradient / (2 * band.voxel_size());
+}
+
+// The normal at a contact, as the field's mean gradient over a footprint: a gradient at a mere point costs a smooth
+// field almost nothing, it would answer with a spike. What the current field's mean over the footprint differs from
+// its gradient at the point is carried over, so that at convergence it is the gradient at the point that agrees.
+bool AddGradientRows(const Band& band, const OrientedPoint& contact, double weight, BandRows& rows) {
+  const double footprint = kFootprintShare * contact.reach / band.voxel_size();
+  const std::vector<Tap> mean = GaussianTaps(band, contact.position, std::max(footprint, kLeastFootprintVoxels));
   std::array<int32_t, 8> voxels;
   std::array<double, 8> weights;
-  if (!band.Trilinear(x, voxels, weights)) return false;
-  for (int32_t v : voxels)
-    for (int axis = 0; axis < 3; ++axis)
-      if (band.Neighbor(v, axis, 0) == Band::kNone || band.Neighbor(v, axis, 1) == Band::kNone) return false;
+  if (mean.empty() || !band.Trilinear(contact.position, voxels, weights)) return false;
+  std::vector<Tap> point;
+  for (int k = 0; k < 8; ++k) {
+    if (!HasAllNeighbors(band, voxels[k])) return false;
+    point.push_back({voxels[k], weights[k]});
+  }
+  const Eigen::Vector3d target = contact.normal + GradientOf(band, mean) - GradientOf(band, point);
   for (int axis = 0; axis < 3; ++axis) {
-    for (int k = 0; k < 8; ++k) {
-      const double c = weights[k] / (2 * band.voxel_size());
-      rows.Push(band.Neighbor(voxels[k], axis, 1), c);
-      rows.Push(band.Neighbor(voxels[k], axis, 0), -c);
+    for (const Tap& tap : mean) {
+      const double c = tap.weight / (2 * band.voxel_size());
+      rows.Push(band.Neighbor(tap.voxel, axis, 1), c);
+      rows.Push(band.Neighbor(tap.voxel, axis, 0), -c);
     }
-    rows.Close(normal[axis], weight);
+    rows.Close(target[axis], weight);
   }
   return true;
 }
@@ -97,15 +151,15 @@ Constraints BuildConstraints(const Band& band, const std::vector<OrientedPoint>&
   if (options.highlight_weight > 0)
     for (const OrientedPoint& contact : contacts) {
       size_t first = c.rows.size();
-      const double w = options.highlight_weight;
-      if (!AddGradientRows(band, contact.position, contact.normal, w / std::pow(contact.sigma_normal, 2), c.rows)) {
+      if (!AddGradientRows(band, contact, options.highlight_weight / std::pow(contact.sigma_normal, 2), c.rows)) {
         ++summary.contacts_off_band;
         continue;
       }
       c.EndGroup(first, false);
       first = c.rows.size();
-      AddValueRow(band, contact.position, w / std::pow(contact.sigma_position, 2), c.rows);
-      c.EndGroup(first, false);
+      if (AddValueRow(band, contact.bundle_position, options.highlight_weight / std::pow(contact.sigma_position, 2),
+                      c.rows))
+        c.EndGroup(first, false);
     }
   if (options.point_weight > 0)
     for (const SurfacePoint& point : points) {

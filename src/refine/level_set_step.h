@@ -1,5 +1,5 @@
 // One step of the level set for fixed contacts: the minimum over the band of
-//   α Σ ρ(‖∇φ(xᵢ) − nᵢ‖²/σₙ²) + Σ ρ(φ(xᵢ)²/σᵢ²) + Σ ρ(φ(pⱼ)²/σⱼ²) + γ ∫‖Hφ‖² + η ∫(∂φ/∂n − 1)² + μ ∫ m (φ − φ₀)²
+//   α Σ ρ(‖∇φ(xᵢ) − nᵢ‖²/σₙ²) + Σ ρ(φ(bᵢ)²/σᵢ²) + Σ ρ(φ(pⱼ)²/σⱼ²) + γ ∫‖Hφ‖² + η ∫(∂φ/∂n − 1)² + μ ∫ m (φ − φ₀)²
 // (DESIGN 3.4, "variational"). Integrals are over the surface, so that weights do not depend on the voxel size.
 #pragma once
 
@@ -28,9 +28,11 @@ struct LevelSetOptions {
 
 // A place where the surface's position and normal are known. Lengths in units of the object's diagonal.
 struct OrientedPoint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // on the current surface: where the normal holds
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  double sigma_position = 0;
+  Eigen::Vector3d bundle_position = Eigen::Vector3d::Zero();  // where the bundle has it
+  double sigma_position = 0;                                  // of the latter, across the surface
+
   double sigma_normal = 0;  // radians
   double reach = 0;         // radius within which it explains the surface, so that the seed need not be kept
 };

@@ -9,11 +9,14 @@
 #include <optional>
 #include <tuple>
 
+#include "constraints/point_covariance.h"
 #include "core/check.h"
 #include "geometry/components.h"
 #include "geometry/edge_topology.h"
+#include "geometry/pseudo_normals.h"
 #include "geometry/ray_caster.h"
 #include "refine/confidence.h"
+#include "refine/lobe.h"
 #include "refine/normalized.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
@@ -63,6 +66,10 @@ constexpr double kMinWidthShare = 0.45;
 constexpr double kMaxWidthShare = 4;
 // A highlight that was left out for its size comes back only when it fits clearly, so that it does not come and go.
 constexpr double kReturnMargin = 1.5;
+// The errors of the bundle's depths are alike over whole regions, which their standard deviations do not say. Where
+// points are dense they decide; far from points the bundle does.
+constexpr double kBundleCaution = 3;
+constexpr double kLeastBundleSigma = 0.002;
 // Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
 constexpr double kMinPieceShare = 0.005;
 
@@ -96,6 +103,7 @@ class Refiner {
   Refiner(const RefineInput& input, const RefineOptions& options, Progress& progress)
       : input_(input), options_(options), progress_(progress), frame_(UnitFrame::Of(input.seed)) {
     seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
+    seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
     surface_ = seed_;
     for (const Light& light : input.lights) {
       lights_.push_back(frame_.FromWorld(light));
@@ -106,6 +114,7 @@ class Refiner {
       for (const Contact& contact : MakeContacts(input.scene, input.highlights, options.contacts))
         contacts_.push_back(frame_.FromWorld(contact));
     misfit_.assign(contacts_.size(), 0);
+    lobes_.resize(contacts_.size());
     MakePoints();
   }
 
@@ -127,7 +136,7 @@ class Refiner {
   void MakePoints();
   bool RunLevel(double voxel);
   double UpdateContacts(const LevelSet& field, IterationSummary& iteration);
-  void RejectMisfits(const LevelSet& field, const RayCaster& caster);
+  void MeasureLobes(const RayCaster& caster);
   void UpdatePoints(const LevelSet& field);
   std::vector<OrientedPoint> OrientedPoints() const;
   void Finish(RefineResult& result);
@@ -140,38 +149,35 @@ class Refiner {
   std::vector<Light> lights_, known_lights_;
   std::vector<bool> solve_lights_;
   std::vector<Contact> contacts_;
-  std::vector<uint8_t> misfit_;  // a contact: was left out for its size
+  std::vector<uint8_t> misfit_;             // a contact: was left out for its size
+  std::vector<std::optional<Lobe>> lobes_;  // a contact: its blob on the current surface
+  double lobe_width_ = 0;                   // radians, the median
   std::vector<SurfacePoint> points_;
+  std::vector<Eigen::Matrix3d> point_covariance_;
   RefineSummary summary_;
 };
 
-// A point's standard deviation across the surface, from its reprojection error and its distance to the cameras.
 void Refiner::MakePoints() {
   const Scene& scene = input_.scene;
   if (input_.point_used.empty()) return;
   GLINT_CHECK_EQ(input_.point_used.size(), scene.points.size());
+  const std::vector<Eigen::Matrix3d> covariances = PointCovariances(scene, input_.point_used);
   for (size_t i = 0; i < scene.points.size(); ++i) {
     if (!input_.point_used[i]) continue;
-    const ScenePoint& point = scene.points[i];
-    std::vector<double> px_world;
-    for (const Observation& o : point.observations) {
-      const View& view = scene.views[o.view];
-      px_world.push_back((point.position - view.Center()).norm() / MeanFocalLength(view.camera));
-    }
     SurfacePoint p;
-    p.position = frame_.FromWorld(point.position);
-    // Depth is worse than the image plane, by about the inverse of the angle between the rays.
-    const double error_px = std::max(0.3, point.error_px);
-    p.sigma = std::max(options_.min_point_sigma_rel, 3 * error_px * Median(px_world) * frame_.scale);
+    p.position = frame_.FromWorld(scene.points[i].position);
     points_.push_back(p);
+    point_covariance_.push_back(frame_.scale * frame_.scale * covariances[i]);
   }
 }
 
-// Depths at which the rays meet the surface; returns how far the contacts moved (median).
+// Depths at which the rays meet the surface; returns how far the contacts moved (median), on the surface or in the
+// bundle, whichever is more.
 double Refiner::UpdateContacts(const LevelSet& field, IterationSummary& iteration) {
   const RayCaster caster(surface_);
   // A seed's normals are not to be relied on; those of a surface that has met the contacts once are.
   const bool reliable = !summary_.iterations.empty();
+  std::vector<double> surface_motion;
   for (Contact& contact : contacts_) {
     contact.accepted = false;
     contact.reason = HighlightStatus::kInconsistent;
@@ -180,45 +186,38 @@ double Refiner::UpdateContacts(const LevelSet& field, IterationSummary& iteratio
       contact.reason = HighlightStatus::kOffSurface;
       continue;
     }
+    if (contact.prior_depth > 0) surface_motion.push_back(std::abs(hit->t - contact.prior_depth));
     contact.prior_depth = hit->t;
     if (reliable) contact.surface_normal = field.Gradient(hit->position).normalized();
     if (contact.depth == 0) contact.depth = hit->t;
     contact.accepted = Incidence(contact, lights_[contact.light]) < options_.contacts.max_incidence_deg * kRadians;
     iteration.contacts_on_surface += contact.accepted;
   }
-  RejectMisfits(field, caster);
+  MeasureLobes(caster);
   std::vector<double> before, motion;
   for (const Contact& contact : contacts_) before.push_back(contact.depth);
   iteration.bundle = SolveBundle(points_, 1.0, solve_lights_, options_.bundle, contacts_, lights_, &known_lights_);
   for (size_t i = 0; i < contacts_.size(); ++i)
     if (contacts_[i].accepted) motion.push_back(std::abs(contacts_[i].depth - before[i]));
-  return Median(motion);
+  return std::max(Median(motion), Median(surface_motion));
 }
 
-// A highlight is as large as the surface's curvature lets it be: across its axes the normal turns away from the half
-// vector by about the same angle everywhere, the width of the lobe. A much smaller one comes from a sharper place (a
-// rim, a handle) that the seed does not have, and its ray meets the surface behind.
-void Refiner::RejectMisfits(const LevelSet& field, const RayCaster& caster) {
-  std::vector<double> least(contacts_.size(), -1), most(contacts_.size()), widths;
+// A much smaller highlight than the surface would make comes from a sharper place (a rim, a handle) that the seed does
+// not have, and its ray meets the surface behind.
+void Refiner::MeasureLobes(const RayCaster& caster) {
+  std::vector<double> widths;
   for (size_t i = 0; i < contacts_.size(); ++i) {
-    const Contact& c = contacts_[i];
-    if (!c.accepted) continue;
-    const auto turn = [&](const Eigen::Vector3d& ray) -> std::optional<Eigen::Vector3d> {
-      const auto hit = caster.Intersect(c.origin, ray);
-      if (!hit) return std::nullopt;
-      return field.Gradient(hit->position).normalized() - HalfVector(lights_[c.light], c.cam_from_world, hit->position);
-    };
-    const auto center = turn(c.direction), a = turn(c.axis_rays[0]), b = turn(c.axis_rays[1]);
-    if (!center || !a || !b) continue;
-    const double width_a = (*a - *center).norm(), width_b = (*b - *center).norm();
-    std::tie(least[i], most[i]) = std::minmax({width_a, width_b});
-    widths.push_back(std::sqrt(width_a * width_b));
+    lobes_[i].reset();
+    if (!contacts_[i].accepted) continue;
+    lobes_[i] = LayLobe(contacts_[i], lights_[contacts_[i].light], surface_, caster);
+    if (lobes_[i]) widths.push_back(lobes_[i]->Width());
   }
-  const double width = Median(widths);
+  lobe_width_ = Median(widths);
   for (size_t i = 0; i < contacts_.size(); ++i) {
-    if (least[i] < 0) continue;
+    if (!lobes_[i]) continue;
+    const auto [least, most] = std::minmax({lobes_[i]->turn.col(0).norm(), lobes_[i]->turn.col(1).norm()});
     const double margin = misfit_[i] ? kReturnMargin : 1;
-    misfit_[i] = least[i] < margin * kMinWidthShare * width || margin * most[i] > kMaxWidthShare * width;
+    misfit_[i] = least < margin * kMinWidthShare * lobe_width_ || margin * most > kMaxWidthShare * lobe_width_;
     if (!misfit_[i]) continue;
     contacts_[i].accepted = false;
     contacts_[i].reason = HighlightStatus::kWrongSize;
@@ -226,11 +225,16 @@ void Refiner::RejectMisfits(const LevelSet& field, const RayCaster& caster) {
 }
 
 void Refiner::UpdatePoints(const LevelSet& field) {
-  for (SurfacePoint& p : points_) {
+  for (size_t i = 0; i < points_.size(); ++i) {
+    SurfacePoint& p = points_[i];
     const Eigen::Vector3d g = field.Gradient(p.position);
     // Off the band there is no normal; a zero one ties the point to no contact.
     p.normal = g.norm() > 0.5 ? Eigen::Vector3d(g.normalized()) : Eigen::Vector3d::Zero();
     p.surface_position = p.position - field.Value(p.position) * p.normal;
+    // Across the surface; off the band, where that is unknown, an average direction's.
+    const Eigen::Matrix3d& c = point_covariance_[i];
+    const double variance = p.normal.isZero() ? c.trace() / 3 : p.normal.dot(c * p.normal);
+    p.sigma = std::max(options_.min_point_sigma_rel, std::sqrt(variance));
   }
 }
 
@@ -239,10 +243,11 @@ std::vector<OrientedPoint> Refiner::OrientedPoints() const {
   for (const Contact& contact : contacts_) {
     if (!contact.accepted) continue;
     OrientedPoint p;
-    p.position = contact.Position();
+    p.position = contact.SurfacePosition();
+    p.bundle_position = contact.Position();
     p.normal = ContactNormal(contact, lights_[contact.light]);
     const double facing = std::abs(contact.direction.dot(p.normal));
-    p.sigma_position = std::clamp(contact.sigma_depth * facing, 2e-4, 0.03);
+    p.sigma_position = std::clamp(kBundleCaution * contact.sigma_depth * facing, kLeastBundleSigma, 0.03);
     p.sigma_normal = contact.sigma_normal;
     oriented.push_back(p);
   }

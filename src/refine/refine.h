@@ -25,7 +25,7 @@ struct RefineOptions {
   double half_width_voxels = 3;
   int max_iterations = 4;
   double min_motion_voxels = 0.05;
-  double min_point_sigma_rel = 0.001;
+  double min_point_sigma_rel = 0.0002;
   bool use_highlights = true;
   std::string lights = "auto";  // "fixed", "solve", "auto": solve those with a standard deviation
   ContactOptions contacts;

@@ -1,0 +1,38 @@
+#include "refine/lobe.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+Eigen::Vector3d NormalAt(const TriangleMesh& mesh, const RayHit& hit) {
+  const Eigen::Vector3i& f = mesh.faces[hit.face];
+  return ((1 - hit.u - hit.v) * mesh.normals[f[0]] + hit.u * mesh.normals[f[1]] + hit.v * mesh.normals[f[2]])
+      .normalized();
+}
+
+}  // namespace
+
+std::optional<Lobe> LayLobe(const Contact& contact, const Light& light, const TriangleMesh& surface,
+                            const RayCaster& caster) {
+  Lobe lobe;
+  const auto peak = caster.Intersect(contact.origin, contact.direction);
+  if (!peak) return std::nullopt;
+  const Eigen::Vector3d half = HalfVector(light, contact.cam_from_world, peak->position);
+  Eigen::Matrix<double, 3, 2> tangents;
+  tangents.col(0) = half.unitOrthogonal();
+  tangents.col(1) = half.cross(tangents.col(0));
+  std::array<Eigen::Vector2d, 4> deviation;
+  for (int k = 0; k < 4; ++k) {
+    const auto hit = caster.Intersect(contact.origin, contact.axis_rays[k]);
+    if (!hit) return std::nullopt;
+    deviation[k] =
+        tangents.transpose() * (NormalAt(surface, *hit) - HalfVector(light, contact.cam_from_world, hit->position));
+  }
+  lobe.turn.col(0) = 0.5 * (deviation[0] - deviation[1]);
+  lobe.turn.col(1) = 0.5 * (deviation[2] - deviation[3]);
+  return lobe;
+}
+
+}  // namespace glint

@@ -1,0 +1,30 @@
+// The size of a highlight is data too. Around its peak the surface normal turns away from the half vector; the blob
+// ends where the turn has reached the width of the lobe, which is the same everywhere on one material.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "constraints/contact.h"
+#include "geometry/ray_caster.h"
+#include "geometry/triangle_mesh.h"
+#include "light/light.h"
+
+namespace glint {
+
+// A highlight's blob laid on the current surface.
+struct Lobe {
+  // Column k: how far the normal turns against the half vector along axis k of the blob, from its centre to one
+  // standard deviation; radians, in two tangents of the surface at the peak.
+  Eigen::Matrix2d turn;
+
+  double Width() const { return std::sqrt(std::abs(turn.determinant())); }
+};
+
+// nullopt where a ray misses the surface. `surface` needs vertex normals; the caster is over the same mesh.
+std::optional<Lobe> LayLobe(const Contact& contact, const Light& light, const TriangleMesh& surface,
+                            const RayCaster& caster);
+
+}  // namespace glint
