@@ -10,6 +10,7 @@
 #include "colmap/project.h"
 #include "colmap/scene.h"
 #include "core/error.h"
+#include "core/median.h"
 #include "geometry/mesh_checks.h"
 #include "io/mesh_io.h"
 #include "io/project_images.h"
@@ -33,12 +34,6 @@ struct Verdict {
     return {std::move(text), problems.empty()};
   }
 };
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 std::string DescribeCameras(const Scene& scene) {
   std::set<std::string> kinds;

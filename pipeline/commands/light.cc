@@ -51,7 +51,7 @@ Camera GuessedCamera(const Arguments& arguments, const cv::Mat& image) {
   return camera;
 }
 
-// The view whose name is the file's, or ends with it.
+// The first view whose image has the file's name, in whatever folder.
 const View* FindView(const Scene& scene, const fs::path& file) {
   for (const View& view : scene.views)
     if (fs::path(view.name).filename() == file.filename()) return &view;

@@ -3,8 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/check.h"
+#include "core/median.h"
 #include "core/parallel.h"
 
 namespace glint {
@@ -59,12 +61,7 @@ std::vector<Eigen::Matrix3d> PointCovariances(const Scene& scene, const std::vec
   std::vector<double> variances;
   for (const Triangulation& t : triangulations)
     if (t.freedom > 0) variances.push_back(t.squared_residual / t.freedom);
-  double common = 0;
-  if (!variances.empty()) {
-    const auto middle = variances.begin() + variances.size() / 2;
-    std::nth_element(variances.begin(), middle, variances.end());
-    common = *middle;
-  }
+  const double common = Median(std::move(variances));
   std::vector<Eigen::Matrix3d> covariances(used.size(), Eigen::Matrix3d::Zero());
   ParallelFor(used.size(), 1 << 10, [&](size_t i) {
     if (!used[i]) return;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/check.h"
+#include "core/median.h"
 #include "core/parallel.h"
 #include "highlights/paint_test.h"
 #include "highlights/seed_surface.h"
@@ -111,12 +112,6 @@ Verdict Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSu
   else if (*kept > options.paint_ratio)
     verdict.status = HighlightStatus::kStaysPut;
   return verdict;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
 }
 
 // See GateHighlights(): what is much fainter than a light's strong highlights.

@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.h"
+
 namespace glint {
 namespace {
 
 constexpr int kRounds = 10;
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -29,6 +30,9 @@ class Band {
 
   // Face neighbour of voxel i along `axis` (0, 1, 2), side 0: minus, 1: plus. kNone off the band.
   int32_t Neighbor(size_t i, int axis, int side) const { return neighbors_[i][2 * axis + side]; }
+  bool HasAllNeighbors(size_t i) const {
+    return std::find(neighbors_[i].begin(), neighbors_[i].end(), kNone) == neighbors_[i].end();
+  }
   // Neighbour at two steps along two axes; kNone if the corner or both ways to it are off the band.
   int32_t Diagonal(size_t i, int axis_a, int side_a, int axis_b, int side_b) const {
     const int32_t a = Neighbor(i, axis_a, side_a);

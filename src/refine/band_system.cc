@@ -34,12 +34,7 @@ BandSystem::BandSystem(const Band& band, BandWeights weights)
   GLINT_CHECK_EQ(weights_.n.size(), band.size());
   GLINT_CHECK_EQ(weights_.pull.size(), band.size());
   GLINT_CHECK_EQ(weights_.pull_target.size(), band.size());
-  for (size_t i = 0; i < band.size(); ++i) {
-    bool interior = true;
-    for (int axis = 0; axis < 3; ++axis)
-      for (int side = 0; side < 2; ++side) interior = interior && band.Neighbor(i, axis, side) != Band::kNone;
-    interior_[i] = interior;
-  }
+  for (size_t i = 0; i < band.size(); ++i) interior_[i] = band.HasAllNeighbors(i);
   SetRows({});
 }
 

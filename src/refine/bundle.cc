@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/check.h"
+#include "core/median.h"
 #include "refine/chord_residual.h"
 #include "refine/neighbors.h"
 
@@ -65,13 +66,6 @@ std::optional<double> SurfaceOffset(const Eigen::Vector3d& s_a, const Eigen::Vec
                                     const Eigen::Vector3d& m_b) {
   if (m_a.isZero() || m_b.isZero()) return std::nullopt;
   return (m_a + m_b).normalized().dot(s_b - s_a);
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 class Solver {

@@ -80,13 +80,6 @@ struct Tap {
   double weight;
 };
 
-bool HasAllNeighbors(const Band& band, int32_t voxel) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side)
-      if (band.Neighbor(voxel, axis, side) == Band::kNone) return false;
-  return true;
-}
-
 // Voxels of a ball about x with Gaussian weights that sum to 1; empty if none has all its neighbours.
 std::vector<Tap> GaussianTaps(const Band& band, const Eigen::Vector3d& x, double sigma_voxels) {
   const Eigen::Vector3d center = band.ToIndexSpace(x);
@@ -101,7 +94,7 @@ std::vector<Tap> GaussianTaps(const Band& band, const Eigen::Vector3d& x, double
         const double squared = (Eigen::Vector3d(i, j, k) - center).squaredNorm();
         if (squared > reach * reach) continue;
         const int32_t v = band.Find({i, j, k});
-        if (v == Band::kNone || !HasAllNeighbors(band, v)) continue;
+        if (v == Band::kNone || !band.HasAllNeighbors(v)) continue;
         taps.push_back({v, std::exp(-0.5 * squared / (sigma_voxels * sigma_voxels))});
         sum += taps.back().weight;
       }
@@ -129,7 +122,7 @@ bool AddGradientRows(const Band& band, const OrientedPoint& contact, double weig
   if (mean.empty() || !band.Trilinear(contact.position, voxels, weights)) return false;
   std::vector<Tap> point;
   for (int k = 0; k < 8; ++k) {
-    if (!HasAllNeighbors(band, voxels[k])) return false;
+    if (!band.HasAllNeighbors(voxels[k])) return false;
     point.push_back({voxels[k], weights[k]});
   }
   const Eigen::Vector3d target = contact.normal + GradientOf(band, mean) - GradientOf(band, point);

@@ -17,9 +17,7 @@ Eigen::Vector3d NormalAt(const TriangleMesh& mesh, const RayHit& hit) {
 std::optional<Lobe> LayLobe(const Contact& contact, const Light& light, const TriangleMesh& surface,
                             const RayCaster& caster) {
   Lobe lobe;
-  const auto peak = caster.Intersect(contact.origin, contact.direction);
-  if (!peak) return std::nullopt;
-  const Eigen::Vector3d half = HalfVector(light, contact.cam_from_world, peak->position);
+  const Eigen::Vector3d half = HalfVector(light, contact.cam_from_world, contact.SurfacePosition());
   Eigen::Matrix<double, 3, 2> tangents;
   tangents.col(0) = half.unitOrthogonal();
   tangents.col(1) = half.cross(tangents.col(0));

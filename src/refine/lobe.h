@@ -23,7 +23,8 @@ struct Lobe {
   double Width() const { return std::sqrt(std::abs(turn.determinant())); }
 };
 
-// nullopt where a ray misses the surface. `surface` needs vertex normals; the caster is over the same mesh.
+// nullopt where a ray through an end of the blob misses the surface. The contact's prior depth is on it. `surface`
+// needs vertex normals; the caster is over the same mesh.
 std::optional<Lobe> LayLobe(const Contact& contact, const Light& light, const TriangleMesh& surface,
                             const RayCaster& caster);
 

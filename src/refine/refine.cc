@@ -11,6 +11,7 @@
 
 #include "constraints/point_covariance.h"
 #include "core/check.h"
+#include "core/median.h"
 #include "geometry/components.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
@@ -72,13 +73,6 @@ constexpr double kBundleCaution = 3;
 constexpr double kLeastBundleSigma = 0.002;
 // Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
 constexpr double kMinPieceShare = 0.005;
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 TriangleMesh WithoutCrumbs(const TriangleMesh& mesh) {
   const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));

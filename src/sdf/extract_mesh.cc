@@ -1,11 +1,9 @@
 #include "sdf/extract_mesh.h"
 
-#include <fmt/format.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <cmath>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "sdf/field_sampler.h"
 #include "sdf/level_set_impl.h"
@@ -62,10 +60,7 @@ TriangleMesh ExtractMesh(const LevelSet& level_set, double iso_world) {
   TriangleMesh mesh;
   if (level_set.empty()) return mesh;
   const openvdb::FloatGrid& grid = *level_set.impl().grid;
-  if (!(std::abs(iso_world) < grid.background()))
-    throw InputError(
-        "", "iso level",
-        fmt::format("expected less than the half width of the band, {}, found {}", grid.background(), iso_world));
+  RequireInBand(level_set, iso_world);
   // Index space about the band's centre: OpenVDB hands points back in single precision.
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   const openvdb::Coord center(box.min()[0] + (box.max()[0] - box.min()[0]) / 2,

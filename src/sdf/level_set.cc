@@ -1,8 +1,12 @@
 #include "sdf/level_set.h"
 
+#include <fmt/format.h>
 #include <openvdb/tools/Interpolation.h>
 
+#include <cmath>
+
 #include "core/check.h"
+#include "core/error.h"
 #include "sdf/level_set_impl.h"
 
 namespace glint {
@@ -66,5 +70,13 @@ Eigen::Vector3d LevelSet::Gradient(const Eigen::Vector3d& x_in_world) const {
 }
 
 LevelSet LevelSet::DeepCopy() const { return impl_ ? MakeLevelSet(impl_->grid->deepCopy()) : LevelSet(); }
+
+void RequireInBand(const LevelSet& level_set, double iso_world) {
+  const float half_width_world = level_set.impl().grid->background();
+  if (!(std::abs(iso_world) < half_width_world))
+    throw InputError(
+        "", "iso level",
+        fmt::format("expected less than the half width of the band, {}, found {}", half_width_world, iso_world));
+}
 
 }  // namespace glint

@@ -1,13 +1,11 @@
 #include "sdf/render.h"
 
-#include <fmt/format.h>
 #include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "core/error.h"
 #include "sdf/field_sampler.h"
 #include "sdf/level_set_impl.h"
 
@@ -102,10 +100,7 @@ std::vector<uint8_t> RenderLevelSet(const LevelSet& level_set, const PictureView
   const Eigen::Vector3d background = LinearFromSrgb(look.background);
   if (level_set.empty()) return RenderPixels(view, look, [&](double, double) { return background; });
   const openvdb::FloatGrid& grid = *level_set.impl().grid;
-  if (!(std::abs(iso_world) < grid.background()))
-    throw InputError(
-        "", "iso level",
-        fmt::format("expected less than the half width of the band, {}, found {}", grid.background(), iso_world));
+  RequireInBand(level_set, iso_world);
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   const openvdb::math::MapBase& map = *grid.transform().baseMap();
   const Vec3d origin = grid.worldToIndex(ToVdb(view.CenterInWorld()));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/median.h"
 #include "geometry/closest_point.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
@@ -26,11 +27,6 @@ constexpr double kRestLength = 1;        // spacings over which the natural curv
 constexpr double kMinBelief = 1e-3;      // in a curvature where nothing is known
 constexpr double kStiffStart = 2.5;      // times the smoothing asked for
 constexpr double kTrustedRange = 4;      // usual distances: farther attachments lose most of their weight
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 // Cotangent weights, within what nearly equilateral triangles have: a sliver must neither turn them negative nor
 // dominate.

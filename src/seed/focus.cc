@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/check.h"
+#include "core/median.h"
 #include "seed/scene_layout.h"
 
 namespace glint {
@@ -13,12 +14,6 @@ struct Axis {
   Eigen::Vector3d center, direction;  // unit
   double depth = -1;                  // median of the view's points; -1: unknown
 };
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 std::vector<Axis> OpticalAxes(const Scene& scene, const std::vector<uint8_t>& use) {
   std::vector<Axis> axes;
