@@ -19,6 +19,7 @@
 #include "pipeline/image_stages.h"
 #include "pipeline/memory.h"
 #include "pipeline/report.h"
+#include "pipeline/run_log.h"
 #include "pipeline/seed_stage.h"
 #include "pipeline/workspace.h"
 
@@ -29,8 +30,8 @@ namespace {
 // reads back from there, so that a run that goes on from a later stage sees the very same values.
 class Flow {
  public:
-  Flow(const RunArguments& arguments, const Config& config, Terminal& terminal)
-      : arguments_(arguments), config_(config), terminal_(terminal), out_(arguments.out) {}
+  Flow(const RunArguments& arguments, const Config& config, RunLog& log)
+      : arguments_(arguments), config_(config), log_(log), out_(arguments.out) {}
 
   RunSummary Run() {
     Prepare();
@@ -54,7 +55,7 @@ class Flow {
     }
     RefineResult refined;
     Stage(RunStage::kRefine, [&] {
-      refined = Refine({scene_, seed, point_used, highlights, lights_}, config_.refine, terminal_);
+      refined = Refine({scene_, seed, point_used, highlights, lights_}, config_.refine, log_);
     });
     Timed("write", [&] { WriteResults(refined); });
     Report("done");
@@ -89,22 +90,22 @@ class Flow {
 
   template <class Work>
   void Timed(const std::string& name, const Work& work) {
-    terminal_.ThrowIfCancelled();
+    log_.ThrowIfCancelled();
     const auto start = std::chrono::steady_clock::now();
     work();
-    terminal_.Finish();
+    log_.Finish();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     summary_.times.push_back({name, seconds.count(), false});
   }
 
   void Note(const std::string& note) {
     summary_.notes.push_back(note);
-    terminal_.Info(note);
+    log_.Info(note);
   }
 
   const RunArguments& arguments_;
   const Config& config_;
-  Terminal& terminal_;
+  RunLog& log_;
   const Workspace out_;
   RunSummary summary_;
   Scene scene_;
@@ -118,7 +119,7 @@ void Flow::Prepare() {
   if (std::filesystem::equivalent(arguments_.project, out_.root(), missing))
     throw InputError(out_.root().string(), "", "is the project itself; expected another folder for the results");
   out_.RemoveResults({arguments_.lights, arguments_.mesh, arguments_.config});
-  terminal_.LogTo(out_.Log());
+  log_.WriteTo(out_.Log());
   summary_.command = arguments_.command;
   if (!arguments_.lights.empty()) lights_ = ReadLights(arguments_.lights);
   for (const Light& light : lights_) found_.emplace_back().light = light;
@@ -131,15 +132,14 @@ void Flow::ReadProject() {
     const ProjectPaths paths = FindProject(arguments_.project, arguments_.images, arguments_.masks);
     for (const std::string& note : paths.notes) Note(note);
     const Model model = ReadModel(paths.model);
-    for (const std::string& warning : model.warnings) terminal_.Warn(warning);
+    for (const std::string& warning : model.warnings) log_.Warn(warning);
     scene_ = MakeScene(model);
     summary_.model = paths.model;
     summary_.images = paths.images;
     summary_.num_views = scene_.views.size();
     summary_.num_points = scene_.points.size();
-    terminal_.Info(
-        fmt::format("{}: {} images, {} points", paths.model.string(), scene_.views.size(), scene_.points.size()));
-    images_ = std::make_unique<ProjectImages>(scene_, paths, terminal_);
+    log_.Info(fmt::format("{}: {} images, {} points", paths.model.string(), scene_.views.size(), scene_.points.size()));
+    images_ = std::make_unique<ProjectImages>(scene_, paths, log_);
     summary_.num_missing_images = images_->missing().size();
   });
 }
@@ -148,12 +148,12 @@ void Flow::MakeSeed() {
   if (scene_.points.empty() && arguments_.mesh.empty())
     throw InputError(summary_.model.string(), "points3D",
                      "expected sparse points, found none; or give a mesh with --mesh");
-  const SeedStageResult seed = RunSeedStage(scene_, *images_, arguments_.mesh, config_, terminal_);
+  const SeedStageResult seed = RunSeedStage(scene_, *images_, arguments_.mesh, config_, log_);
   for (const std::string& note : seed.notes) Note(note);
-  for (const std::string& warning : seed.warnings) terminal_.Warn(warning);
+  for (const std::string& warning : seed.warnings) log_.Warn(warning);
   summary_.seed_report = seed.report;
-  terminal_.Finish();
-  terminal_.Info(seed.report);
+  log_.Finish();
+  log_.Info(seed.report);
   if (seed.start.empty()) GiveUp({}, "no seed: the sparse points enclose no object; give a mesh with --mesh");
   WriteMesh(out_.Seed(), seed.mesh);
   WriteMesh(out_.Start(), seed.start);
@@ -161,7 +161,7 @@ void Flow::MakeSeed() {
 }
 
 void Flow::Detect() {
-  WriteHighlights(out_.Stages() / "candidates.json", DetectInAllViews(scene_, *images_, config_.detect, terminal_));
+  WriteHighlights(out_.Stages() / "candidates.json", DetectInAllViews(scene_, *images_, config_.detect, log_));
 }
 
 void Flow::FindLightsIfUnknown(const TriangleMesh& seed, const std::vector<Highlight>& candidates) {
@@ -169,16 +169,16 @@ void Flow::FindLightsIfUnknown(const TriangleMesh& seed, const std::vector<Highl
     if (InsideObject(lights_[k], seed))
       throw InputError(arguments_.lights.string(), fmt::format("light {}", k), "lies inside the object");
   const std::vector<FoundLight> found =
-      FindLights(scene_, *images_, seed, config_.gate, config_.lights, candidates, &summary_.find_lights, terminal_);
-  terminal_.Finish();
+      FindLights(scene_, *images_, seed, config_.gate, config_.lights, candidates, &summary_.find_lights, log_);
+  log_.Finish();
   if (lights_.empty()) {
     WriteFoundLights(out_.Stages() / "lights.json", found);
-    terminal_.Info(summary_.find_lights.BriefReport());
+    log_.Info(summary_.find_lights.BriefReport());
     return;
   }
   WriteLights(out_.Stages() / "lights.json", lights_);
   for (const std::string& sentence : Contradictions(lights_, found, scene_.views, BoundingBox(seed).center()))
-    terminal_.Warn(sentence);
+    log_.Warn(sentence);
 }
 
 // The lights given, or those that were found.
@@ -198,10 +198,10 @@ void Flow::TakeLights(const std::vector<Highlight>& candidates) {
 }
 
 void Flow::Gate(const TriangleMesh& seed, std::vector<Highlight> highlights) {
-  GateHighlights(scene_, *images_, seed, lights_, config_.gate, highlights, &summary_.gate, terminal_);
+  GateHighlights(scene_, *images_, seed, lights_, config_.gate, highlights, &summary_.gate, log_);
   WriteHighlights(out_.Stages() / "highlights.json", highlights);
-  terminal_.Finish();
-  terminal_.Info(summary_.gate.BriefReport());
+  log_.Finish();
+  log_.Info(summary_.gate.BriefReport());
 }
 
 void Flow::RequireAccepted(const std::vector<Highlight>& highlights) {
@@ -223,8 +223,8 @@ void Flow::WriteHighlightPictures(const std::vector<Highlight>& highlights) {
   for (const Highlight& h : highlights) ++summary_.highlights_by_status[static_cast<size_t>(h.status)];
   summary_.num_candidates = highlights.size();
   if (config_.output.overlays && !highlights.empty())
-    WriteOverlays(scene_, *images_, highlights, config_.output.overlay_max_side_px, out_.Overlays(), terminal_);
-  terminal_.Finish();
+    WriteOverlays(scene_, *images_, highlights, config_.output.overlay_max_side_px, out_.Overlays(), log_);
+  log_.Finish();
 }
 
 // What the bundle says of a light replaces what the votes did; one that was not solved for stays as it was given.
@@ -240,7 +240,7 @@ void Flow::TakeRefined(const RefineResult& refined, size_t k) {
 }
 
 void Flow::WriteResults(const RefineResult& refined) {
-  for (const std::string& warning : refined.summary.warnings) terminal_.Warn(warning);
+  for (const std::string& warning : refined.summary.warnings) log_.Warn(warning);
   WriteHighlightPictures(refined.highlights);
   for (size_t k = 0; k < refined.lights.size(); ++k) TakeRefined(refined, k);
   WriteFoundLights(out_.Lights(), found_);
@@ -254,14 +254,20 @@ void Flow::WriteResults(const RefineResult& refined) {
 
 void Flow::Report(const std::string& outcome) {
   summary_.outcome = outcome;
-  summary_.warnings = terminal_.Warnings();
+  summary_.warnings = log_.Warnings();
   WriteFileAtomically(out_.Report(), ReportJson(summary_));
 }
 
 }  // namespace
 
-RunSummary Run(const RunArguments& arguments, const Config& config, Terminal& terminal) {
-  return Flow(arguments, config, terminal).Run();
+RunSummary Run(const RunArguments& arguments, const Config& config, Progress& progress) {
+  RunLog log(progress);
+  try {
+    return Flow(arguments, config, log).Run();
+  } catch (const std::exception& e) {
+    log.Failed(e.what());
+    throw;
+  }
 }
 
 }  // namespace glint

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
 #include "highlights/find_lights.h"
 #include "highlights/gate.h"
 #include "light/light.h"
 #include "pipeline/config.h"
-#include "pipeline/terminal.h"
 #include "refine/refine.h"
 
 namespace glint {
@@ -62,7 +62,7 @@ struct RunSummary {
 };
 
 // Runs every stage and writes the workspace (pipeline/workspace.h). Throws InputError, NoResultError (after writing
-// what there is, and the report) or CancelledError.
-RunSummary Run(const RunArguments& arguments, const Config& config, Terminal& terminal);
+// what there is, and the report) or CancelledError. What the run says goes to `progress` and to the log file.
+RunSummary Run(const RunArguments& arguments, const Config& config, Progress& progress = Progress::Silent());
 
 }  // namespace glint

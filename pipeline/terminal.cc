@@ -1,16 +1,13 @@
 #include "pipeline/terminal.h"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <vector>
 
-#include "core/error.h"
 #include "pipeline/interrupt.h"
 
 namespace glint {
@@ -34,38 +31,23 @@ std::string Bar(size_t done, size_t total) {
 
 }  // namespace
 
-// The screen and, once asked for, a log file; each message goes to both.
-struct Terminal::Sinks {
-  spdlog::logger screen{"glint", std::make_shared<spdlog::sinks::stderr_color_sink_st>()};
-  std::unique_ptr<spdlog::logger> file;
+struct Terminal::Screen {
+  spdlog::logger logger{"glint", std::make_shared<spdlog::sinks::stderr_color_sink_st>()};
 
   void Log(spdlog::level::level_enum level, std::string_view message) {
-    screen.log(level, spdlog::string_view_t(message.data(), message.size()));
-    if (file) file->log(level, spdlog::string_view_t(message.data(), message.size()));
+    logger.log(level, spdlog::string_view_t(message.data(), message.size()));
   }
 };
 
 Terminal::Terminal(Verbosity verbosity)
-    : sinks_(std::make_unique<Sinks>()),
+    : screen_(std::make_unique<Screen>()),
       quiet_(verbosity == Verbosity::kQuiet),
       draw_bars_(!quiet_ && isatty(STDERR_FILENO) == 1) {
-  sinks_->screen.set_level(quiet_ ? spdlog::level::warn : spdlog::level::info);
-  sinks_->screen.set_pattern("%^%v%$");
+  screen_->logger.set_level(quiet_ ? spdlog::level::warn : spdlog::level::info);
+  screen_->logger.set_pattern("%^%v%$");
 }
 
 Terminal::~Terminal() { ClearBar(); }
-
-void Terminal::LogTo(const std::filesystem::path& file) {
-  std::lock_guard lock(mutex_);
-  try {
-    sinks_->file = std::make_unique<spdlog::logger>(
-        "file", std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), /*truncate=*/false));
-  } catch (const spdlog::spdlog_ex& e) {
-    throw InputError(file.string(), "", std::string("the log cannot be written: ") + e.what());
-  }
-  sinks_->file->set_pattern("%Y-%m-%d %H:%M:%S %L %v");
-  sinks_->file->flush_on(spdlog::level::info);
-}
 
 void Terminal::Begin(std::string_view what, size_t total) {
   std::lock_guard lock(mutex_);
@@ -74,9 +56,7 @@ void Terminal::Begin(std::string_view what, size_t total) {
   total_ = total;
   done_ = 0;
   began_ = shown_ = Clock::now();
-  if (draw_bars_) {
-    Draw();
-  }
+  if (draw_bars_ && !unit_.empty()) Draw();
 }
 
 void Terminal::Advance(size_t steps) {
@@ -89,29 +69,28 @@ void Terminal::Advance(size_t steps) {
     Draw();
   } else if (now - shown_ >= kPlainLineEvery && !unit_.empty()) {
     shown_ = now;
-    sinks_->Log(spdlog::level::info,
-                total_ > 0 ? fmt::format("{}: {} of {}", unit_, done_, total_) : fmt::format("{}: {}", unit_, done_));
+    screen_->Log(spdlog::level::info,
+                 total_ > 0 ? fmt::format("{}: {} of {}", unit_, done_, total_) : fmt::format("{}: {}", unit_, done_));
   }
 }
 
 void Terminal::Info(std::string_view message) {
   std::lock_guard lock(mutex_);
   ClearBar();
-  sinks_->Log(spdlog::level::info, message);
+  screen_->Log(spdlog::level::info, message);
 }
 
 void Terminal::Warn(std::string_view message) {
   std::lock_guard lock(mutex_);
   ClearBar();
-  warnings_.emplace_back(message);
-  sinks_->Log(spdlog::level::warn, "warning: " + std::string(message));
+  screen_->Log(spdlog::level::warn, "warning: " + std::string(message));
 }
 
 void Terminal::Error(std::string_view message) {
   std::lock_guard lock(mutex_);
   ClearBar();
   unit_.clear();
-  sinks_->Log(spdlog::level::err, "error: " + std::string(message));
+  screen_->Log(spdlog::level::err, "error: " + std::string(message));
 }
 
 bool Terminal::Cancelled() const { return InterruptSignal() != 0; }
@@ -121,16 +100,11 @@ void Terminal::Finish() {
   FinishLocked();
 }
 
-std::vector<std::string> Terminal::Warnings() const {
-  std::lock_guard lock(mutex_);
-  return warnings_;
-}
-
 void Terminal::FinishLocked() {
   ClearBar();
   if (unit_.empty()) return;
   const std::string count = total_ > 0 ? fmt::format(" ({})", total_) : "";
-  sinks_->Log(spdlog::level::info, fmt::format("{}{}: {}", unit_, count, Duration(Seconds(Clock::now() - began_))));
+  screen_->Log(spdlog::level::info, fmt::format("{}{}: {}", unit_, count, Duration(Seconds(Clock::now() - began_))));
   unit_.clear();
 }
 

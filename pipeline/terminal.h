@@ -3,12 +3,10 @@
 
 #include <chrono>
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/progress.h"
 
@@ -23,9 +21,6 @@ class Terminal : public Progress {
   explicit Terminal(Verbosity verbosity);
   ~Terminal() override;
 
-  // From here on every message also goes, with the time, to a log file. Throws InputError if it cannot be opened.
-  void LogTo(const std::filesystem::path& file);
-
   void Begin(std::string_view what, size_t total) override;
   void Advance(size_t steps = 1) override;
   void Info(std::string_view message) override;
@@ -36,19 +31,16 @@ class Terminal : public Progress {
   // Ends the running unit of work: the bar makes room for its closing line.
   void Finish();
 
-  // Every warning so far, for the report.
-  std::vector<std::string> Warnings() const;
-
  private:
   using Clock = std::chrono::steady_clock;
-  struct Sinks;
+  struct Screen;
 
   void FinishLocked();
   void Draw();
   void ClearBar();
 
   mutable std::mutex mutex_;
-  std::unique_ptr<Sinks> sinks_;
+  std::unique_ptr<Screen> screen_;
   bool quiet_;
   bool draw_bars_;
   bool bar_on_screen_ = false;
@@ -57,7 +49,6 @@ class Terminal : public Progress {
   size_t done_ = 0;
   Clock::time_point began_;
   Clock::time_point shown_;
-  std::vector<std::string> warnings_;
 };
 
 }  // namespace glint

@@ -12,7 +12,7 @@ class Progress {
  public:
   virtual ~Progress() = default;
 
-  // A unit of work named `what` begins that will advance `total` times (0: unknown).
+  // A unit of work named `what` begins that will advance `total` times (0: unknown). Empty: the last one is done.
   virtual void Begin(std::string_view what, size_t total);
   virtual void Advance(size_t steps = 1);
   virtual void Info(std::string_view message);

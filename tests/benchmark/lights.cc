@@ -21,6 +21,7 @@
 #include "pipeline/image_stages.h"
 #include "pipeline/run.h"
 #include "pipeline/seed_stage.h"
+#include "pipeline/terminal.h"
 #include "synthetic/write_project.h"
 
 namespace glint {

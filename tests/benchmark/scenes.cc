@@ -17,6 +17,7 @@
 #include "metrics/swept_region.h"
 #include "pipeline/comparison.h"
 #include "pipeline/run.h"
+#include "pipeline/terminal.h"
 #include "synthetic/write_project.h"
 
 namespace glint {
