@@ -19,6 +19,7 @@
 #include "pipeline/image_stages.h"
 #include "pipeline/memory.h"
 #include "pipeline/report.h"
+#include "pipeline/report_page.h"
 #include "pipeline/run_log.h"
 #include "pipeline/seed_stage.h"
 #include "pipeline/workspace.h"
@@ -58,7 +59,7 @@ class Flow {
       refined = Refine({scene_, seed, point_used, highlights, lights_}, config_.refine, log_);
     });
     Timed("write", [&] { WriteResults(refined); });
-    Report("done");
+    Report("done", refined);
     return summary_;
   }
 
@@ -75,7 +76,7 @@ class Flow {
   void TakeRefined(const RefineResult& refined, size_t k);
   void WriteResults(const RefineResult& refined);
   void WriteHighlightPictures(const std::vector<Highlight>& highlights);
-  void Report(const std::string& outcome);
+  void Report(const std::string& outcome, const RefineResult& refined);
 
   // Runs a stage unless the user goes on from a later one.
   template <class Work>
@@ -215,7 +216,9 @@ void Flow::RequireAccepted(const std::vector<Highlight>& highlights) {
 // What was found so far is written, for the user to see why there is no result.
 void Flow::GiveUp(const std::vector<Highlight>& highlights, const std::string& why) {
   WriteHighlightPictures(highlights);
-  Report(why);
+  RefineResult nothing;
+  nothing.highlights = highlights;
+  Report(why, nothing);
   throw NoResultError(fmt::format("{}; what was found is in {}", why, out_.root().string()));
 }
 
@@ -252,9 +255,11 @@ void Flow::WriteResults(const RefineResult& refined) {
   summary_.num_faces = refined.mesh.faces.size();
 }
 
-void Flow::Report(const std::string& outcome) {
+void Flow::Report(const std::string& outcome, const RefineResult& refined) {
   summary_.outcome = outcome;
   summary_.warnings = log_.Warnings();
+  const TriangleMesh seed = summary_.diagonal_world > 0 ? ReadMesh(out_.Seed()) : TriangleMesh();
+  WriteFileAtomically(out_.ReportPage(), ReportPage({summary_, config_, scene_, *images_, seed, refined}, log_));
   WriteFileAtomically(out_.Report(), ReportJson(summary_));
 }
 

@@ -59,7 +59,7 @@ Workspace::Workspace(fs::path root) : root_(std::move(root)) {
 Workspace::~Workspace() { ::close(folder_); }
 
 void Workspace::RemoveResults(const std::vector<fs::path>& inputs) const {
-  for (const fs::path& file : {Mesh(), LevelSetFile(), Lights(), Config(), Report()}) {
+  for (const fs::path& file : {Mesh(), LevelSetFile(), Lights(), Config(), Report(), ReportPage()}) {
     std::error_code error;
     const bool is_input = std::any_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
       std::error_code missing;

@@ -26,6 +26,7 @@ class Workspace {
   std::filesystem::path Overlays() const { return root_ / "highlights"; }
   std::filesystem::path Config() const { return root_ / "config.yaml"; }
   std::filesystem::path Report() const { return root_ / "report.json"; }
+  std::filesystem::path ReportPage() const { return root_ / "report.html"; }
   std::filesystem::path Log() const { return root_ / "log.txt"; }
   // What a later run with --from needs of the stages before.
   std::filesystem::path Stages() const { return root_ / "stages"; }
