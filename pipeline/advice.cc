@@ -12,8 +12,8 @@ namespace {
 constexpr double kDegrees = 180 / M_PI;
 constexpr size_t kFewViews = 20;
 constexpr size_t kFewHighlights = 20;
-constexpr double kOneSideDeg = 35;          // nine of ten directions lie within this of their mean
-constexpr double kNarrowCamerasDeg = 30;    // the same of the cameras, seen from the object
+constexpr double kOneSideDeg = 35;        // nine of ten directions lie within this of their mean
+constexpr double kNarrowCamerasDeg = 30;  // the same of the cameras, seen from the object
 constexpr double kUncertainLightDeg = 2;
 constexpr double kUncertainLightRel = 0.1;  // of the object's diagonal
 constexpr double kUnsure = 0.2;             // confidence below which a vertex rests on smoothness alone
@@ -29,7 +29,8 @@ std::optional<double> SpreadDeg(const std::vector<Eigen::Vector3d>& directions) 
   if (!(mean.norm() > 1e-6 * static_cast<double>(directions.size()))) return 180;
   mean.normalize();
   std::vector<double> angles;
-  for (const Eigen::Vector3d& d : directions) angles.push_back(std::acos(std::clamp(d.dot(mean), -1.0, 1.0)) * kDegrees);
+  for (const Eigen::Vector3d& d : directions)
+    angles.push_back(std::acos(std::clamp(d.dot(mean), -1.0, 1.0)) * kDegrees);
   const auto nine_tenths = angles.begin() + static_cast<std::ptrdiff_t>((angles.size() - 1) * 9 / 10);
   std::nth_element(angles.begin(), nine_tenths, angles.end());
   return *nine_tenths;
@@ -39,8 +40,9 @@ void AboutOutcome(const RunSummary& summary, List& list) {
   if (summary.outcome == "done") return;
   std::string cure = "See the photographs below for what was found in them and why it was rejected.";
   if (summary.num_candidates == 0)
-    cure = "Light the object with one small bright lamp or the sun, expose so that only the highlights are white, and "
-           "photograph it from many sides.";
+    cure =
+        "Light the object with one small bright lamp or the sun, expose so that only the highlights are white, and "
+        "photograph it from many sides.";
   list.push_back({AdviceLevel::kProblem, "There is no refined surface: " + summary.outcome + ".", cure});
 }
 
@@ -62,10 +64,10 @@ void AboutPhotographs(const RunSummary& summary, const Scene& scene, List& list)
   for (const View& view : scene.views) directions.push_back((view.Center() - middle).normalized());
   const auto spread = SpreadDeg(directions);
   if (spread && !scene.points.empty() && *spread < kNarrowCamerasDeg)
-    list.push_back({AdviceLevel::kWarning,
-                    fmt::format("The cameras all look from one side: nine of ten lie within {:.0f}° of one direction.",
-                                *spread),
-                    "Move around the object more, and change the height too."});
+    list.push_back(
+        {AdviceLevel::kWarning,
+         fmt::format("The cameras all look from one side: nine of ten lie within {:.0f}° of one direction.", *spread),
+         "Move around the object more, and change the height too."});
 }
 
 void AboutHighlights(const RunSummary& summary, const std::vector<Contact>& contacts, const std::vector<Light>& lights,
@@ -78,11 +80,12 @@ void AboutHighlights(const RunSummary& summary, const std::vector<Contact>& cont
   for (const Contact& c : contacts) normals.push_back(ContactNormal(c, lights.at(static_cast<size_t>(c.light))));
   const auto spread = SpreadDeg(normals);
   if (spread && *spread < kOneSideDeg)
-    list.push_back({AdviceLevel::kNote,
-                    fmt::format("All highlights lie on one side: nine of ten have a surface normal within {:.0f}° of one "
-                                "direction. The rest of the surface is no better than the sparse points.",
-                                *spread),
-                    "If the object has other glossy sides, move around it more, or put a lamp on the other side."});
+    list.push_back(
+        {AdviceLevel::kNote,
+         fmt::format("All highlights lie on one side: nine of ten have a surface normal within {:.0f}° of one "
+                     "direction. The rest of the surface is no better than the sparse points.",
+                     *spread),
+         "If the object has other glossy sides, move around it more, or put a lamp on the other side."});
   if (summary.gate.accepted > 0 && summary.gate.ambiguous_fraction > kLargeShare)
     list.push_back({AdviceLevel::kNote,
                     fmt::format("{:.0f} % of the highlights could come from either of two lights.",
@@ -133,8 +136,8 @@ void AboutLights(const RunSummary& summary, List& list) {
   for (size_t k = 0; k < summary.lights.size(); ++k) {
     const FoundLight& found = summary.lights[k];
     const bool distant = found.light.type == LightType::kDistant;
-    const double sigma = distant || !(summary.diagonal_world > 0) ? found.light.sigma
-                                                                  : found.light.sigma / summary.diagonal_world;
+    const double sigma =
+        distant || !(summary.diagonal_world > 0) ? found.light.sigma : found.light.sigma / summary.diagonal_world;
     if (!found.determined) {
       list.push_back({AdviceLevel::kWarning,
                       fmt::format("Light {} is not determined and was not used: {}.", k, found.why),
@@ -157,14 +160,16 @@ void AboutSurface(const RunSummary& summary, const TriangleMesh& mesh, List& lis
                                 summary.refine.iterations.back().contact_motion_voxels),
                     "Allow more with --set refine.max_iterations=N."});
   if (mesh.confidence.empty()) return;
-  const auto unsure = std::count_if(mesh.confidence.begin(), mesh.confidence.end(), [](float c) { return c < kUnsure; });
+  const auto unsure =
+      std::count_if(mesh.confidence.begin(), mesh.confidence.end(), [](float c) { return c < kUnsure; });
   const double share = static_cast<double>(unsure) / static_cast<double>(mesh.confidence.size());
   if (share > kLargeShare)
-    list.push_back({AdviceLevel::kNote,
-                    fmt::format("{:.0f} % of the surface has no highlight near it; it rests on the sparse points and on "
-                                "smoothness.",
-                                100 * share),
-                    "Look at the surface coloured by confidence: photograph so that highlights pass over what is dark."});
+    list.push_back(
+        {AdviceLevel::kNote,
+         fmt::format("{:.0f} % of the surface has no highlight near it; it rests on the sparse points and on "
+                     "smoothness.",
+                     100 * share),
+         "Look at the surface coloured by confidence: photograph so that highlights pass over what is dark."});
 }
 
 }  // namespace

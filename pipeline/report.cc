@@ -125,7 +125,7 @@ std::string ReportJson(const RunSummary& summary) {
   json["stages"] = Json::array();
   for (const StageTime& time : summary.times) {
     json["stages"].push_back({{"stage", time.stage}, {"reused", time.reused}, {"seconds", time.seconds}});
-    total += time.seconds;
+    if (!time.reused) total += time.seconds;
   }
   json["total_seconds"] = total;
   // Names of files need not be UTF-8; what is not is replaced, so that the report is valid JSON whatever they are.

@@ -1,8 +1,11 @@
 // The main job: a COLMAP project in, a better mesh out.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/progress.h"
@@ -15,31 +18,38 @@
 namespace glint {
 
 // The stages whose results are kept in the workspace, in their order; a run can go on from any of them.
-enum class RunStage { kSeed, kDetect, kLights, kGate, kRefine };
-inline constexpr std::array<std::string_view, 5> kRunStageNames = {"seed", "detect", "lights", "gate", "refine"};
+enum class RunStage { kSeed, kDetect, kLights, kGate, kRefine, kReport };
+inline constexpr std::array<std::string_view, 6> kRunStageNames = {"seed", "detect", "lights",
+                                                                   "gate", "refine", "report"};
+
+// Which stages are done. Unless told otherwise, those whose results are not in the workspace yet.
+struct StageChoice {
+  std::optional<RunStage> from;   // those before it are taken as they are, this and later ones are done in any case
+  std::optional<RunStage> until;  // the last one
+};
 
 struct RunArguments {
   std::filesystem::path project;
   std::filesystem::path out;
-  std::filesystem::path images;     // empty: found in the project
-  std::filesystem::path masks;      // empty: found in the project, or none
-  std::filesystem::path lights;     // empty: unknown
-  std::filesystem::path config;     // where the configuration came from, if from a file
-  std::filesystem::path mesh;       // empty: the seed is made from the sparse points
-  RunStage from = RunStage::kSeed;  // stages before it are read from an earlier run in `out`
-  std::string command;              // as typed, for the report
+  std::filesystem::path images;  // empty: found in the project
+  std::filesystem::path masks;   // empty: found in the project, or none
+  std::filesystem::path lights;  // empty: unknown
+  std::filesystem::path config;  // where the configuration came from, if from a file
+  std::filesystem::path mesh;    // empty: the seed is made from the sparse points
+  StageChoice stages;
+  std::string command;  // as typed, for the report
 };
 
 struct StageTime {
   std::string stage;
   double seconds = 0;
-  bool reused = false;  // read from an earlier run
+  bool reused = false;  // taken from an earlier run, which spent the seconds
 };
 
 // Everything that is to be said of a run, as data; report.json is made from it.
 struct RunSummary {
   std::string command;
-  std::string outcome;  // "done", or why there is no result
+  std::string outcome;  // "done", "nothing to do", "stopped after STAGE", or why there is no result
   std::filesystem::path model;
   std::filesystem::path images;
   size_t num_views = 0;
@@ -61,8 +71,9 @@ struct RunSummary {
   std::vector<StageTime> times;
 };
 
-// Runs every stage and writes the workspace (pipeline/workspace.h). Throws InputError, NoResultError (after writing
-// what there is, and the report) or CancelledError. What the run says goes to `progress` and to the log file.
+// Runs the stages that are not done yet (pipeline/stages.h) and writes the workspace (pipeline/workspace.h). The
+// results of an earlier run stay until they are replaced. Throws InputError, NoResultError (after writing what there
+// is, and the report) or CancelledError. What the run says goes to `progress` and to the log file.
 RunSummary Run(const RunArguments& arguments, const Config& config, Progress& progress = Progress::Silent());
 
 }  // namespace glint

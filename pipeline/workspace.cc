@@ -53,21 +53,53 @@ Workspace::Workspace(fs::path root) : root_(std::move(root)) {
   // Only where a run writes: the user may have named a folder that holds other things too.
   RemoveTemporaries<fs::directory_iterator>(root_);
   RemoveTemporaries<fs::directory_iterator>(Stages());
+  fs::remove_all(StagedFiles(), error);
   RemoveTemporaries<fs::recursive_directory_iterator>(Overlays());
 }
 
 Workspace::~Workspace() { ::close(folder_); }
 
-void Workspace::RemoveResults(const std::vector<fs::path>& inputs) const {
+bool Workspace::SetEarlierResultsAside(const std::vector<fs::path>& inputs) const {
+  std::error_code error;
+  if (!fs::exists(Mesh(), error)) return false;
+  const fs::path earlier = root_ / "earlier";
+  fs::create_directories(earlier, error);
+  if (error) throw InputError(earlier.string(), "", "cannot be made: " + error.message());
   for (const fs::path& file : {Mesh(), LevelSetFile(), Lights(), Config(), Report(), ReportPage()}) {
-    std::error_code error;
     const bool is_input = std::any_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
       std::error_code missing;
       return fs::equivalent(input, file, missing);
     });
-    if (!is_input) fs::remove(file, error);
-    if (error) throw InputError(file.string(), "", "cannot be replaced: " + error.message());
+    if (is_input || !fs::exists(file, error)) continue;
+    fs::rename(file, earlier / file.filename(), error);
+    if (error) throw InputError(file.string(), "", "cannot be moved into earlier/: " + error.message());
   }
+  return true;
+}
+
+Publication::Publication(const Workspace& out) : folder_(out.StagedFiles()) {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+fs::path Publication::For(const fs::path& file) {
+  files_.emplace_back(folder_ / (std::to_string(files_.size()) + file.extension().string()), file);
+  return files_.back().first;
+}
+
+void Publication::Publish() {
+  for (const fs::path& file : gone_) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw InputError(file.string(), "", "cannot be removed: " + error.message());
+  }
+  for (const auto& [from, to] : files_) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error) throw InputError(to.string(), "", "cannot be replaced: " + error.message());
+  }
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
 }
 
 fs::path PathForImage(const fs::path& folder, const std::string& image_name, std::string_view suffix) {

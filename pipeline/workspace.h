@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -28,19 +29,45 @@ class Workspace {
   std::filesystem::path Report() const { return root_ / "report.json"; }
   std::filesystem::path ReportPage() const { return root_ / "report.html"; }
   std::filesystem::path Log() const { return root_ / "log.txt"; }
-  // What a later run with --from needs of the stages before.
+  // What the stages leave for those after them, and for a run that goes on.
   std::filesystem::path Stages() const { return root_ / "stages"; }
   std::filesystem::path Start() const { return Stages() / "start.ply"; }
+  std::filesystem::path PointsOnObject() const { return Stages() / "points_on_object.txt"; }
+  std::filesystem::path Candidates() const { return Stages() / "candidates.json"; }
+  std::filesystem::path StageLights() const { return Stages() / "lights.json"; }
+  std::filesystem::path Gated() const { return Stages() / "highlights.json"; }
+  std::filesystem::path Refined() const { return Stages() / "refined_highlights.json"; }
+  std::filesystem::path Contacts() const { return Stages() / "contacts.json"; }
+
+  std::filesystem::path StagedFiles() const { return Stages() / "new"; }
 
   const std::filesystem::path& root() const { return root_; }
 
-  // Removes the results of an earlier run that this run will write anew, so that a run that fails leaves no
-  // results that are not its own; but not those that are inputs of this run.
-  void RemoveResults(const std::vector<std::filesystem::path>& inputs) const;
+  // When a run ends without a mesh: moves mesh, field, lights, configuration and report of an earlier finished run into
+  // `earlier/`, so that what lies in the folder belongs together and nothing is lost; but not what is an input of this
+  // run. Returns whether there were any.
+  bool SetEarlierResultsAside(const std::vector<std::filesystem::path>& inputs) const;
 
  private:
   std::filesystem::path root_;
   int folder_ = -1;  // file descriptor that carries the lock
+};
+
+// Several files that take the place of those of an earlier run all together, once every one is written.
+class Publication {
+ public:
+  explicit Publication(const Workspace& out);
+  // Where to write what will become `file`.
+  std::filesystem::path For(const std::filesystem::path& file);
+  // `file` is of the earlier run alone and goes.
+  void Remove(const std::filesystem::path& file) { gone_.push_back(file); }
+  // Throws InputError if the system refuses.
+  void Publish();
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> files_;  // from, to
+  std::vector<std::filesystem::path> gone_;
 };
 
 // Where an image called `image_name` in the model goes below `folder`: `folder/image_name + suffix`. Names that would

@@ -6,7 +6,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +21,28 @@ namespace {
 
 struct Arguments {
   RunArguments run;
-  std::string from{kRunStageNames[0]};
+  std::string from, until;
+  bool force = false;
   std::vector<std::string> settings;
 };
+
+std::optional<RunStage> StageNamed(const std::string& name) {
+  const auto found = std::find(kRunStageNames.begin(), kRunStageNames.end(), name);
+  if (found == kRunStageNames.end()) return std::nullopt;
+  return static_cast<RunStage>(found - kRunStageNames.begin());
+}
+
+void Say(const RunSummary& summary, const std::filesystem::path& out, Terminal& terminal) {
+  if (summary.outcome == "nothing to do")
+    terminal.Info(
+        fmt::format("{}: nothing to do: program, project and options are those that made what is there "
+                    "(--force does it anew)",
+                    out.string()));
+  else if (summary.outcome == "done")
+    terminal.Info(fmt::format("{}: mesh.ply ({} faces), sdf.vdb, report.json", out.string(), summary.num_faces));
+  else
+    terminal.Info(fmt::format("{}: {}; the same command without --until goes on", out.string(), summary.outcome));
+}
 
 }  // namespace
 
@@ -38,19 +59,19 @@ void AddRunCommand(CLI::App& app, CommandLine& line) {
   command->add_option("--images", arguments->run.images, "Folder of the images, if not in the project");
   command->add_option("--masks", arguments->run.masks,
                       "Folder of masks (IMAGE.png, 0 is ignored), if not in the project");
-  command->add_option("--from", arguments->from, "Go on from this stage of the earlier run in OUT")
-      ->check(CLI::IsMember(std::vector<std::string>(kRunStageNames.begin(), kRunStageNames.end())))
-      ->capture_default_str();
+  const CLI::IsMember a_stage(std::vector<std::string>(kRunStageNames.begin(), kRunStageNames.end()));
+  CLI::Option* from =
+      command->add_option("--from", arguments->from, "Do this stage and those after it in any case")->check(a_stage);
+  command->add_option("--until", arguments->until, "Stop after this stage")->check(a_stage);
+  command->add_flag("--force", arguments->force, "Do every stage anew")->excludes(from);
   AddCommonOptions(*command, line);
   command->callback([arguments, &line] {
     line.action = [arguments, &line](Terminal& terminal) {
       const Config config = ResolveConfig(arguments->run.config, arguments->settings);
-      const auto from = std::find(kRunStageNames.begin(), kRunStageNames.end(), arguments->from);
-      arguments->run.from = static_cast<RunStage>(from - kRunStageNames.begin());
+      arguments->run.stages.from = StageNamed(arguments->force ? std::string(kRunStageNames[0]) : arguments->from);
+      arguments->run.stages.until = StageNamed(arguments->until);
       arguments->run.command = line.text;
-      const RunSummary summary = Run(arguments->run, config, terminal);
-      terminal.Info(
-          fmt::format("{}: mesh.ply ({} faces), sdf.vdb, report.json", arguments->run.out.string(), summary.num_faces));
+      Say(Run(arguments->run, config, terminal), arguments->run.out, terminal);
     };
   });
 }

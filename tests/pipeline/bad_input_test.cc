@@ -208,11 +208,15 @@ TEST_F(BadInput, GoingOnWithoutAnEarlierRun) {
   ExpectRefused(HasSubstr("--from"), {"--from", "nowhere"});
 }
 
-TEST_F(BadInput, AnEarlierResultDoesNotSurviveAFailedRun) {
+TEST_F(BadInput, AnEarlierResultSurvivesARunThatFails) {
   fs::create_directories(folder_ / "out");
-  for (const char* name : {"out/mesh.ply", "out/report.json"}) Write(name, "old");
+  for (const char* name : {"out/mesh.ply", "out/report.json", "out/config.yaml"}) Write(name, "old");
   Write("p/images/view_002.jpg", "this is no JPEG");
-  ExpectRefused(HasSubstr("view_002.jpg"));
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("view_002.jpg"));
+  for (const char* name : {"out/mesh.ply", "out/report.json", "out/config.yaml"})
+    EXPECT_EQ(ReadText(folder_ / name), "old") << name;
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ fs::path* Run::shared_ = nullptr;
 // What may differ between two runs of the same thing.
 void RemoveTimes(Json& json) {
   if (json.is_object())
-    for (const char* key : {"seconds", "total_seconds", "command"}) json.erase(key);
+    for (const char* key : {"seconds", "total_seconds", "command", "reused"}) json.erase(key);
   for (Json& child : json)
     if (child.is_structured()) RemoveTimes(child);
 }

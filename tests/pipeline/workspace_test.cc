@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <sstream>
 
 #include "core/error.h"
 
@@ -43,6 +44,48 @@ TEST_F(WorkspaceTest, AFileInTheWayIsNamed) {
   std::ofstream(root_ / "out") << "x";
   EXPECT_THROW(Workspace(root_ / "out"), InputError);
   EXPECT_THROW(Workspace(root_ / "out/deeper"), InputError);
+}
+
+std::string Text(const fs::path& file) {
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+TEST_F(WorkspaceTest, APublicationIsAllOrNothingUntilItIsPublished) {
+  const Workspace out(root_);
+  for (const fs::path& file : {out.Mesh(), out.Lights(), out.Report()}) std::ofstream(file) << "old";
+  {
+    Publication unfinished(out);
+    const fs::path staged = unfinished.For(out.Mesh());
+    EXPECT_EQ(staged.extension(), ".ply") << "writers go by the extension";
+    fs::create_directories(staged.parent_path());
+    std::ofstream(staged) << "half";
+  }
+  EXPECT_EQ(Text(out.Mesh()), "old");
+  Publication files(out);
+  for (const fs::path& file : {out.Mesh(), out.Lights()}) {
+    const fs::path staged = files.For(file);
+    fs::create_directories(staged.parent_path());
+    std::ofstream(staged) << "new";
+  }
+  files.Remove(out.Report());
+  files.Publish();
+  EXPECT_EQ(Text(out.Mesh()), "new");
+  EXPECT_EQ(Text(out.Lights()), "new");
+  EXPECT_FALSE(fs::exists(out.Report()));
+  EXPECT_FALSE(fs::exists(out.StagedFiles()));
+}
+
+TEST_F(WorkspaceTest, EarlierResultsAreSetAsideButNotInputs) {
+  const Workspace out(root_);
+  EXPECT_FALSE(out.SetEarlierResultsAside({}));
+  for (const fs::path& file : {out.Mesh(), out.Lights(), out.Report()}) std::ofstream(file) << "old";
+  EXPECT_TRUE(out.SetEarlierResultsAside({out.Lights()}));
+  EXPECT_EQ(Text(root_ / "earlier/mesh.ply"), "old");
+  EXPECT_EQ(Text(root_ / "earlier/report.json"), "old");
+  EXPECT_FALSE(fs::exists(out.Mesh()));
+  EXPECT_TRUE(fs::exists(out.Lights()));
 }
 
 TEST(PathForImage, StaysInTheFolder) {
