@@ -30,7 +30,7 @@ class Flow {
   RunSummary Run();
 
  private:
-  std::vector<Stage> Plan();  // run.cc
+  std::vector<PlannedStage> Plan();  // run.cc
   void Prepare();
   void ReadProject();
   void LookOver(const ProjectPaths& paths);

@@ -8,47 +8,47 @@ namespace glint {
 
 // The whole way from a project to a mesh: what decides each stage's result, what it leaves in the workspace, what is
 // done for it, and what the stages after it take.
-std::vector<Stage> Flow::Plan() {
-  const Stage seed = {.stage = RunStage::kSeed,
-                      .given = {"model", "images", "mesh"},
-                      .options = {arguments_.mesh.empty() ? "seed" : "given_mesh"},
-                      .leaves = {out_.Start(), out_.Seed(), out_.PointsOnObject()},
-                      .make = [this] { MakeSeed(); },
-                      .take = [this] { TakeSeed(); }};
-  const Stage detect = {.stage = RunStage::kDetect,
-                        .given = {"model", "images"},
-                        .options = {"detect"},
-                        .leaves = {out_.Candidates()},
-                        .make = [this] { Detect(); },
-                        .take = [this] { TakeHighlights(out_.Candidates()); }};
-  const Stage lights = {.stage = RunStage::kLights,
-                        .given = {"model", "images", "lights"},
-                        .reads = {out_.Start(), out_.Candidates()},
-                        .options = {"gate", "lights"},
-                        .leaves = {out_.StageLights()},
-                        .make = [this] { FindLightsIfUnknown(); },
-                        .take = [this] { TakeLights(); }};
-  const Stage gate = {.stage = RunStage::kGate,
-                      .given = {"model", "images"},
-                      .reads = {out_.Start(), out_.Candidates(), out_.StageLights()},
-                      .options = {"gate"},
-                      .leaves = {out_.Gated()},
-                      .make = [this] { Gate(); },
-                      .take = [this] { TakeGated(); }};
-  Stage refine = {.stage = RunStage::kRefine,
-                  .given = {"model", "lights"},
-                  .reads = {out_.Start(), out_.PointsOnObject()},
-                  .options = {"refine"},
-                  .leaves = {out_.Mesh(), out_.LevelSetFile(), out_.Lights(), out_.Refined(), out_.Contacts()},
-                  .make = [this] { RefineSurface(); },
-                  .take = [this] { TakeRefined(); }};
-  const Stage report = {.stage = RunStage::kReport,
-                        .given = {"model", "images", "lights", "mesh"},
-                        .reads = {out_.Seed(), out_.Mesh(), out_.Lights(), out_.Refined(), out_.Contacts()},
-                        .options = {""},
-                        .leaves = Reports(),
-                        .make = [this] { Report("done"); },
-                        .tells = true};
+std::vector<PlannedStage> Flow::Plan() {
+  const PlannedStage seed = {.stage = RunStage::kSeed,
+                             .given = {"model", "images", "mesh"},
+                             .options = {arguments_.mesh.empty() ? "seed" : "given_mesh"},
+                             .leaves = {out_.Start(), out_.Seed(), out_.PointsOnObject()},
+                             .make = [this] { MakeSeed(); },
+                             .take = [this] { TakeSeed(); }};
+  const PlannedStage detect = {.stage = RunStage::kDetect,
+                               .given = {"model", "images"},
+                               .options = {"detect"},
+                               .leaves = {out_.Candidates()},
+                               .make = [this] { Detect(); },
+                               .take = [this] { TakeHighlights(out_.Candidates()); }};
+  const PlannedStage lights = {.stage = RunStage::kLights,
+                               .given = {"model", "images", "lights"},
+                               .reads = {out_.Start(), out_.Candidates()},
+                               .options = {"gate", "lights"},
+                               .leaves = {out_.StageLights()},
+                               .make = [this] { FindLightsIfUnknown(); },
+                               .take = [this] { TakeLights(); }};
+  const PlannedStage gate = {.stage = RunStage::kGate,
+                             .given = {"model", "images"},
+                             .reads = {out_.Start(), out_.Candidates(), out_.StageLights()},
+                             .options = {"gate"},
+                             .leaves = {out_.Gated()},
+                             .make = [this] { Gate(); },
+                             .take = [this] { TakeGated(); }};
+  PlannedStage refine = {.stage = RunStage::kRefine,
+                         .given = {"model", "lights"},
+                         .reads = {out_.Start(), out_.PointsOnObject()},
+                         .options = {"refine"},
+                         .leaves = {out_.Mesh(), out_.LevelSetFile(), out_.Lights(), out_.Refined(), out_.Contacts()},
+                         .make = [this] { RefineSurface(); },
+                         .take = [this] { TakeRefined(); }};
+  const PlannedStage report = {.stage = RunStage::kReport,
+                               .given = {"model", "images", "lights", "mesh"},
+                               .reads = {out_.Seed(), out_.Mesh(), out_.Lights(), out_.Refined(), out_.Contacts()},
+                               .options = {""},
+                               .leaves = Reports(),
+                               .make = [this] { Report("done"); },
+                               .tells = true};
   if (!config_.refine.use_highlights) return {seed, refine, report};
   refine.reads.insert(refine.reads.end(), {out_.StageLights(), out_.Gated()});
   return {seed, detect, lights, gate, refine, report};

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string Name(const Stage& stage) { return std::string(kRunStageNames[static_cast<size_t>(stage.stage)]); }
+std::string Name(const PlannedStage& stage) { return std::string(kRunStageNames[static_cast<size_t>(stage.stage)]); }
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Stages::Stages(const Workspace& out, const Config& config, RunLog& log)
   Give("program", fmt::format("{} {}", GLINT_VERSION, BuildId()));
 }
 
-fs::path Stages::RecordPath(const Stage& stage) const { return out_.Stages() / (Name(stage) + ".record.json"); }
+fs::path Stages::RecordPath(const PlannedStage& stage) const { return out_.Stages() / (Name(stage) + ".record.json"); }
 
 std::map<std::string, std::string> Stages::HashesOf(const std::vector<fs::path>& files) {
   std::map<std::string, std::string> hashes;
@@ -30,7 +30,7 @@ std::map<std::string, std::string> Stages::HashesOf(const std::vector<fs::path>&
   return hashes;
 }
 
-Ingredients Stages::IngredientsOf(const Stage& stage, const RunSummary& summary) {
+Ingredients Stages::IngredientsOf(const PlannedStage& stage, const RunSummary& summary) {
   Ingredients all;
   all["program"] = given_.at("program");
   for (const std::string_view name : stage.given) all[std::string(name)] = given_.at(std::string(name));
@@ -50,7 +50,8 @@ Ingredients Stages::IngredientsOf(const Stage& stage, const RunSummary& summary)
 }
 
 // Empty: it is done.
-std::string Stages::WhyNotDone(const Stage& stage, const std::optional<StageRecord>& record, const Ingredients& now) {
+std::string Stages::WhyNotDone(const PlannedStage& stage, const std::optional<StageRecord>& record,
+                               const Ingredients& now) {
   if (!record) return "it was not finished before";
   if (const std::string changes = DescribeChanges(record->ingredients, now); !changes.empty()) return changes;
   for (const auto& [file, hash] : HashesOf(stage.leaves)) {
@@ -62,9 +63,9 @@ std::string Stages::WhyNotDone(const Stage& stage, const std::optional<StageReco
   return "";
 }
 
-bool Stages::AllDone(const std::vector<Stage>& stages, RunSummary& summary) {
+bool Stages::AllDone(const std::vector<PlannedStage>& stages, RunSummary& summary) {
   RunSummary recalled = summary;
-  for (const Stage& stage : stages) {
+  for (const PlannedStage& stage : stages) {
     const std::optional<StageRecord> record = ReadStageRecord(RecordPath(stage));
     if (!WhyNotDone(stage, record, IngredientsOf(stage, recalled)).empty()) return false;
     TakeSummaryPart(stage.stage, record->summary, recalled);
@@ -75,14 +76,14 @@ bool Stages::AllDone(const std::vector<Stage>& stages, RunSummary& summary) {
 }
 
 // The run tells of a stage that it takes over as if it had done it.
-void Stages::Recall(const Stage& stage, const StageRecord& record, RunSummary& summary) {
+void Stages::Recall(const PlannedStage& stage, const StageRecord& record, RunSummary& summary) {
   TakeSummaryPart(stage.stage, record.summary, summary);
   for (const std::string& warning : record.warnings) log_.Warn(warning);
   summary.notes.insert(summary.notes.end(), record.notes.begin(), record.notes.end());
   summary.times.push_back({Name(stage), record.seconds, true});
 }
 
-void Stages::TakeAsItIs(const Stage& stage, RunSummary& summary) {
+void Stages::TakeAsItIs(const PlannedStage& stage, RunSummary& summary) {
   const fs::path& first = stage.leaves.front();
   if (hashes_.Of(first).empty())
     throw InputError(first.string(), "",
@@ -94,7 +95,7 @@ void Stages::TakeAsItIs(const Stage& stage, RunSummary& summary) {
   Recall(stage, record.value_or(StageRecord{}), summary);
 }
 
-void Stages::Make(const Stage& stage, const Ingredients& now, RunSummary& summary) {
+void Stages::Make(const PlannedStage& stage, const Ingredients& now, RunSummary& summary) {
   const size_t notes_before = summary.notes.size(), warnings_before = log_.Warnings().size();
   const auto start = std::chrono::steady_clock::now();
   stage.make();
@@ -114,11 +115,11 @@ void Stages::Make(const Stage& stage, const Ingredients& now, RunSummary& summar
   hashes_.Save();
 }
 
-StagesOutcome Stages::Run(const std::vector<Stage>& stages, const StageChoice& choice, RunSummary& summary) {
+StagesOutcome Stages::Run(const std::vector<PlannedStage>& stages, const StageChoice& choice, RunSummary& summary) {
   if (choice.from && choice.until && *choice.until < *choice.from)
     throw InputError("", "--until", "comes before the stage of --from");
   if (!choice.from && !choice.until && AllDone(stages, summary)) return StagesOutcome::kNothingToDo;
-  for (const Stage& stage : stages) {
+  for (const PlannedStage& stage : stages) {
     log_.ThrowIfCancelled();
     if (choice.until && stage.stage > *choice.until) return StagesOutcome::kStopped;
     if (choice.from && stage.stage < *choice.from) {

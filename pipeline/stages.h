@@ -18,7 +18,7 @@
 namespace glint {
 
 // One stage: what decides its result, what it leaves in the workspace, and how.
-struct Stage {
+struct PlannedStage {
   RunStage stage = RunStage::kSeed;
   std::vector<std::string_view> given = {};        // of what comes from outside, see Stages::Give()
   std::vector<std::filesystem::path> reads = {};   // what stages before it left
@@ -42,17 +42,17 @@ class Stages {
   // Does the stages in their order, each unless it was done before from the same program, inputs and options and what
   // it left is still there; its part of `summary` is filled either way. What was done is remembered in the workspace as
   // soon as it is done. Stages before `choice.from` are taken as they are; those from there on are always done.
-  StagesOutcome Run(const std::vector<Stage>& stages, const StageChoice& choice, RunSummary& summary);
+  StagesOutcome Run(const std::vector<PlannedStage>& stages, const StageChoice& choice, RunSummary& summary);
 
  private:
-  Ingredients IngredientsOf(const Stage& stage, const RunSummary& summary);
+  Ingredients IngredientsOf(const PlannedStage& stage, const RunSummary& summary);
   std::map<std::string, std::string> HashesOf(const std::vector<std::filesystem::path>& files);
-  std::filesystem::path RecordPath(const Stage& stage) const;
-  std::string WhyNotDone(const Stage& stage, const std::optional<StageRecord>& record, const Ingredients& now);
-  bool AllDone(const std::vector<Stage>& stages, RunSummary& summary);
-  void Recall(const Stage& stage, const StageRecord& record, RunSummary& summary);
-  void TakeAsItIs(const Stage& stage, RunSummary& summary);
-  void Make(const Stage& stage, const Ingredients& now, RunSummary& summary);
+  std::filesystem::path RecordPath(const PlannedStage& stage) const;
+  std::string WhyNotDone(const PlannedStage& stage, const std::optional<StageRecord>& record, const Ingredients& now);
+  bool AllDone(const std::vector<PlannedStage>& stages, RunSummary& summary);
+  void Recall(const PlannedStage& stage, const StageRecord& record, RunSummary& summary);
+  void TakeAsItIs(const PlannedStage& stage, RunSummary& summary);
+  void Make(const PlannedStage& stage, const Ingredients& now, RunSummary& summary);
 
   const Workspace& out_;
   const Config& config_;

@@ -61,7 +61,7 @@ int NearestCorner(const TriangleMesh& mesh, int face, const Eigen::Vector3d& wei
 // is outside the mask is left out.
 std::vector<double> SampledDistances(const TriangleMesh& from, const TriangleMesh& to, const NearestFinder& finder,
                                      int num_samples, const std::vector<uint8_t>& mask, bool mask_is_on_from) {
-  const std::vector<SurfaceSample> samples = SampleSurface(from, num_samples);
+  const std::vector<AreaSample> samples = SampleSurface(from, num_samples);
   std::vector<double> distances(samples.size());
   ParallelFor(samples.size(), kGrain, [&](size_t i) {
     const Nearest nearest = finder.Find(samples[i].position);

@@ -5,7 +5,7 @@
 
 namespace glint {
 
-std::vector<SurfaceSample> SampleSurface(const TriangleMesh& mesh, int count) {
+std::vector<AreaSample> SampleSurface(const TriangleMesh& mesh, int count) {
   std::vector<double> cumulative(mesh.faces.size());
   double area = 0;
   for (size_t f = 0; f < mesh.faces.size(); ++f) {
@@ -14,7 +14,7 @@ std::vector<SurfaceSample> SampleSurface(const TriangleMesh& mesh, int count) {
     area += 0.5 * (b - a).cross(c - a).norm();
     cumulative[f] = area;
   }
-  std::vector<SurfaceSample> samples;
+  std::vector<AreaSample> samples;
   if (!(area > 0) || count <= 0) return samples;
   samples.reserve(count);
   size_t f = 0;

@@ -8,7 +8,7 @@
 
 namespace glint {
 
-struct SurfaceSample {
+struct AreaSample {
   Eigen::Vector3d position;
   Eigen::Vector3d weights;  // barycentric
   int face;
@@ -16,6 +16,6 @@ struct SurfaceSample {
 
 // `count` samples, each for the same area: a stratified walk along the cumulative area with an R2 sequence inside the
 // triangles (Roberts 2018). Faces without area get none.
-std::vector<SurfaceSample> SampleSurface(const TriangleMesh& mesh, int count);
+std::vector<AreaSample> SampleSurface(const TriangleMesh& mesh, int count);
 
 }  // namespace glint
