@@ -15,6 +15,11 @@ void OutputOptions::Visit(OptionVisitor& v) {
            .min = 64,
            .max = 65535},
           overlay_max_side_px);
+  v.Field(
+      {.name = "highlight_masks", .help = "Write highlight_masks/: masks as COLMAP reads them, 0 on the highlights."},
+      highlight_masks);
+  v.Field({.name = "obj", .help = "Write mesh.obj too."}, obj);
+  v.Field({.name = "glb", .help = "Write mesh.glb (glTF) too."}, glb);
   v.Field({.name = "memory_fraction",
            .help = "Refuse to start when the level set would need more than this part of the memory that is free.",
            .min = 0.01,
@@ -23,6 +28,7 @@ void OutputOptions::Visit(OptionVisitor& v) {
 }
 
 void Config::Visit(OptionVisitor& v) {
+  VisitSection(v, "photos", "From photographs or a film to a COLMAP project.", photos);
   VisitSection(v, "seed", "The mesh to start on, from the sparse points.", seed);
   VisitSection(v, "given_mesh", "A mesh given with --mesh in place of the seed.", given_mesh);
   VisitSection(v, "detect", "Highlights in a single image.", detect);

@@ -10,6 +10,7 @@
 #include "highlights/find_lights.h"
 #include "highlights/gate.h"
 #include "pipeline/given_mesh.h"
+#include "pipeline/photo_stage.h"
 #include "refine/refine.h"
 #include "seed/build_seed.h"
 
@@ -19,11 +20,15 @@ namespace glint {
 struct OutputOptions {
   bool overlays = true;
   int overlay_max_side_px = 1600;
+  bool highlight_masks = true;
+  bool obj = false;
+  bool glb = false;
   double memory_fraction = 0.8;
   void Visit(OptionVisitor& v);
 };
 
 struct Config {
+  PhotoOptions photos;
   SeedOptions seed;
   GivenMeshOptions given_mesh;
   DetectOptions detect;

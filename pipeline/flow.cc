@@ -8,12 +8,14 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "highlights/check_lights.h"
+#include "highlights/surface_colors.h"
 #include "io/mesh_io.h"
 #include "io/vdb_io.h"
 #include "light/light_io.h"
 #include "pipeline/artifacts.h"
 #include "pipeline/image_stages.h"
 #include "pipeline/memory.h"
+#include "pipeline/photo_stage.h"
 #include "pipeline/report.h"
 #include "pipeline/report_page.h"
 #include "pipeline/seed_stage.h"
@@ -44,9 +46,22 @@ void Flow::Prepare() {
   stages_.Give("mesh", stages_.hashes().Of(arguments_.mesh));
 }
 
+// Where the project is that the run is about: as given, or made of photographs or a film.
+ProjectPaths Flow::FindOrMakeProject() {
+  const PhotoStageResult photos =
+      RunPhotoStage(arguments_.project, out_.Photographs(), out_.root(), config_.photos, log_);
+  log_.Finish();
+  for (const ReconstructStep& step : photos.steps)
+    summary_.times.push_back({"colmap " + step.name, step.seconds, step.reused});
+  if (!photos.report.empty()) Note(photos.report);
+  if (!photos.why_not.empty()) throw NoResultError(photos.why_not);  // there is nothing yet to report on
+  return FindProject(photos.project, arguments_.images.empty() ? photos.images : arguments_.images,
+                     arguments_.masks.empty() ? photos.masks : arguments_.masks);
+}
+
 void Flow::ReadProject() {
+  const ProjectPaths paths = FindOrMakeProject();
   const auto start = std::chrono::steady_clock::now();
-  const ProjectPaths paths = FindProject(arguments_.project, arguments_.images, arguments_.masks);
   for (const std::string& note : paths.notes) Note(note);
   const Model model = ReadModel(paths.model);
   for (const std::string& warning : model.warnings) log_.Warn(warning);
@@ -89,6 +104,7 @@ void Flow::MakeSeed() {
   summary_.seed_report = seed.report;
   log_.Finish();
   log_.Info(seed.report);
+  if (!seed.points.vertices.empty()) WriteMesh(out_.Points(), seed.points);
   if (seed.start.empty()) GiveUp("no seed: the sparse points enclose no object; give a mesh with --mesh");
   WriteMesh(out_.Seed(), seed.mesh);
   WriteMesh(out_.Start(), seed.start);
@@ -174,8 +190,11 @@ void Flow::RefineSurface() {
     files.Remove(out_.LevelSetFile());
   else
     WriteVdb(files.For(out_.LevelSetFile()), refined.level_set);
-  WriteMesh(files.For(out_.Mesh()), refined.mesh);
-  for (const fs::path& file : {out_.Report(), out_.ReportPage()}) files.Remove(file);
+  TriangleMesh mesh = refined.mesh;
+  mesh.colors = ColorSurface(mesh, scene_, *images_, refined.highlights, {}, log_).rgb;
+  WriteMesh(files.For(out_.Mesh()), mesh);
+  for (const fs::path& file : {out_.Report(), out_.ReportPage(), out_.MeshAs(".obj"), out_.MeshAs(".glb")})
+    files.Remove(file);
   files.Publish();
 }
 
@@ -207,6 +226,10 @@ std::vector<fs::path> Flow::Reports() const {
   std::vector<fs::path> files = {out_.Report(), out_.ReportPage(), out_.Config()};
   if (config_.output.overlays)
     for (const View& view : scene_.views) files.push_back(PathForImage(out_.Overlays(), view.name, ".png"));
+  if (config_.output.highlight_masks)
+    for (const View& view : scene_.views) files.push_back(PathForImage(out_.HighlightMasks(), view.name, ".png"));
+  if (config_.output.obj) files.push_back(out_.MeshAs(".obj"));
+  if (config_.output.glb) files.push_back(out_.MeshAs(".glb"));
   return files;
 }
 
@@ -215,6 +238,10 @@ void Flow::Report(const std::string& outcome) {
   summary_.num_candidates = highlights_.size();
   if (config_.output.overlays && !highlights_.empty())
     WriteOverlays(scene_, *images_, highlights_, config_.output.overlay_max_side_px, out_.Overlays(), log_);
+  if (config_.output.highlight_masks && !highlights_.empty())
+    WriteHighlightMasks(scene_, highlights_, out_.HighlightMasks(), log_);
+  if (config_.output.obj && !refined_.mesh.empty()) WriteMesh(out_.MeshAs(".obj"), refined_.mesh);
+  if (config_.output.glb && !refined_.mesh.empty()) WriteMesh(out_.MeshAs(".glb"), refined_.mesh);
   log_.Finish();
   summary_.outcome = outcome;
   summary_.warnings = log_.Warnings();

@@ -32,6 +32,7 @@ class Flow {
  private:
   std::vector<PlannedStage> Plan();  // run.cc
   void Prepare();
+  ProjectPaths FindOrMakeProject();
   void ReadProject();
   void LookOver(const ProjectPaths& paths);
 

@@ -12,7 +12,7 @@ std::vector<PlannedStage> Flow::Plan() {
   const PlannedStage seed = {.stage = RunStage::kSeed,
                              .given = {"model", "images", "mesh"},
                              .options = {arguments_.mesh.empty() ? "seed" : "given_mesh"},
-                             .leaves = {out_.Start(), out_.Seed(), out_.PointsOnObject()},
+                             .leaves = {out_.Start(), out_.Seed(), out_.PointsOnObject(), out_.Points()},
                              .make = [this] { MakeSeed(); },
                              .take = [this] { TakeSeed(); }};
   const PlannedStage detect = {.stage = RunStage::kDetect,
@@ -36,7 +36,7 @@ std::vector<PlannedStage> Flow::Plan() {
                              .make = [this] { Gate(); },
                              .take = [this] { TakeGated(); }};
   PlannedStage refine = {.stage = RunStage::kRefine,
-                         .given = {"model", "lights"},
+                         .given = {"model", "images", "lights"},
                          .reads = {out_.Start(), out_.PointsOnObject()},
                          .options = {"refine"},
                          .leaves = {out_.Mesh(), out_.LevelSetFile(), out_.Lights(), out_.Refined(), out_.Contacts()},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "pipeline/given_mesh.h"
 #include "seed/build_seed.h"
@@ -23,6 +24,33 @@ SeedStageResult FromGivenMesh(const Scene& scene, const std::filesystem::path& p
   return result;
 }
 
+// Green: on the seed, light green: the object's too, brown: ground, grey: something else, yellow: unreliable, red:
+// virtual.
+TriangleMesh ColoredPoints(const Scene& scene, const std::vector<PointFate>& fate) {
+  constexpr std::array<std::array<uint8_t, 3>, 6> kColors = {
+      {{0, 140, 0}, {140, 220, 140}, {150, 100, 50}, {150, 150, 150}, {240, 200, 0}, {230, 0, 0}}};
+  TriangleMesh cloud;
+  for (size_t i = 0; i < fate.size(); ++i) {
+    cloud.vertices.push_back(scene.points[i].position);
+    cloud.colors.push_back(kColors[static_cast<size_t>(fate[i])]);
+  }
+  return cloud;
+}
+
+// How to choose otherwise than was done.
+std::string ChoiceNote(const Scene& scene, const std::vector<PointFate>& fate) {
+  Eigen::AlignedBox3d box;
+  for (size_t i = 0; i < fate.size(); ++i)
+    if (fate[i] == PointFate::kUsed || fate[i] == PointFate::kObject) box.extend(scene.points[i].position);
+  if (box.isEmpty()) return "";
+  const Eigen::Vector3d c = box.center(), s = box.sizes();
+  return fmt::format(
+      "the object was taken from the points in the box {:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g} (centre and size); "
+      "stages/points.ply shows them in green; to choose otherwise give another box with --set seed.object.box=... or "
+      "masks",
+      c.x(), c.y(), c.z(), s.x(), s.y(), s.z());
+}
+
 SeedStageResult FromPoints(const Scene& scene, const ImageSource& images, const SeedOptions& options,
                            Progress& progress) {
   SeedSummary summary;
@@ -31,6 +59,8 @@ SeedStageResult FromPoints(const Scene& scene, const ImageSource& images, const 
   result.mesh = std::move(seed.mesh);
   result.start = std::move(seed.smooth);
   result.point_used = std::move(seed.point_used);
+  result.points = ColoredPoints(scene, seed.fate);
+  if (const std::string note = ChoiceNote(scene, seed.fate); !note.empty()) result.notes.push_back(note);
   result.report = summary.BriefReport();
   result.warnings = std::move(summary.warnings);
   return result;

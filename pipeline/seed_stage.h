@@ -18,6 +18,7 @@ struct SeedStageResult {
   TriangleMesh mesh;                // closed, oriented outward, in the model's frame; empty: `warnings` say why
   TriangleMesh start;               // what refinement starts on: `mesh` faired through the points, or as it was given
   std::vector<uint8_t> point_used;  // a scene point: lies on the object
+  TriangleMesh points;              // the scene's, coloured by what became of them; empty for a given mesh
   std::string report;               // one line for people
   std::vector<std::string> notes;
   std::vector<std::string> warnings;

@@ -65,7 +65,8 @@ bool Workspace::SetEarlierResultsAside(const std::vector<fs::path>& inputs) cons
   const fs::path earlier = root_ / "earlier";
   fs::create_directories(earlier, error);
   if (error) throw InputError(earlier.string(), "", "cannot be made: " + error.message());
-  for (const fs::path& file : {Mesh(), LevelSetFile(), Lights(), Config(), Report(), ReportPage()}) {
+  for (const fs::path& file :
+       {Mesh(), MeshAs(".obj"), MeshAs(".glb"), LevelSetFile(), Lights(), Config(), Report(), ReportPage()}) {
     const bool is_input = std::any_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
       std::error_code missing;
       return fs::equivalent(input, file, missing);

@@ -21,17 +21,22 @@ class Workspace {
 
   // What a user looks for.
   std::filesystem::path Mesh() const { return root_ / "mesh.ply"; }
+  std::filesystem::path MeshAs(const char* extension) const { return Mesh().replace_extension(extension); }
   std::filesystem::path LevelSetFile() const { return root_ / "sdf.vdb"; }
   std::filesystem::path Seed() const { return root_ / "seed.ply"; }
   std::filesystem::path Lights() const { return root_ / "lights.json"; }
   std::filesystem::path Overlays() const { return root_ / "highlights"; }
+  std::filesystem::path HighlightMasks() const { return root_ / "highlight_masks"; }
   std::filesystem::path Config() const { return root_ / "config.yaml"; }
   std::filesystem::path Report() const { return root_ / "report.json"; }
   std::filesystem::path ReportPage() const { return root_ / "report.html"; }
   std::filesystem::path Log() const { return root_ / "log.txt"; }
+  // The COLMAP project of a run that begins with photographs.
+  std::filesystem::path Photographs() const { return root_ / "colmap"; }
   // What the stages leave for those after them, and for a run that goes on.
   std::filesystem::path Stages() const { return root_ / "stages"; }
   std::filesystem::path Start() const { return Stages() / "start.ply"; }
+  std::filesystem::path Points() const { return Stages() / "points.ply"; }
   std::filesystem::path PointsOnObject() const { return Stages() / "points_on_object.txt"; }
   std::filesystem::path Candidates() const { return Stages() / "candidates.json"; }
   std::filesystem::path StageLights() const { return Stages() / "lights.json"; }

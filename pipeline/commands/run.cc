@@ -47,9 +47,10 @@ void Say(const RunSummary& summary, const std::filesystem::path& out, Terminal& 
 }  // namespace
 
 void AddRunCommand(CLI::App& app, CommandLine& line) {
-  CLI::App* command = app.add_subcommand("run", "The main job: a COLMAP project in, a better mesh out");
+  CLI::App* command = app.add_subcommand("run", "The main job: a COLMAP project, photographs or a film in, a mesh out");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("PROJECT", arguments->run.project, "Folder of a COLMAP project")->required();
+  command->add_option("PROJECT", arguments->run.project, "A COLMAP project, a folder of photographs, or a film")
+      ->required();
   command->add_option("-o,--out", arguments->run.out, "Folder for the results")->required();
   command->add_option("--config", arguments->run.config, "YAML file with options to change (see glint config)");
   command->add_option("--set", arguments->settings, "Change one option: section.option=value")->allow_extra_args(false);
@@ -59,6 +60,9 @@ void AddRunCommand(CLI::App& app, CommandLine& line) {
   command->add_option("--images", arguments->run.images, "Folder of the images, if not in the project");
   command->add_option("--masks", arguments->run.masks,
                       "Folder of masks (IMAGE.png, 0 is ignored), if not in the project");
+  command->add_option_function<std::string>(
+      "--box", [arguments](const std::string& box) { arguments->settings.push_back("seed.object.box=" + box); },
+      "The object is in this box of the project's frame, --box=X,Y,Z,SX,SY,SZ: centre and size");
   const CLI::IsMember a_stage(std::vector<std::string>(kRunStageNames.begin(), kRunStageNames.end()));
   CLI::Option* from =
       command->add_option("--from", arguments->from, "Do this stage and those after it in any case")->check(a_stage);

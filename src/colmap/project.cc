@@ -187,4 +187,12 @@ ProjectPaths FindProject(const fs::path& project, const fs::path& images_overrid
   return paths;
 }
 
+bool IsProject(const fs::path& folder) { return IsFolder(folder) && !FindModels(folder).empty(); }
+
+std::vector<size_t> SubModelSizes(const fs::path& folder) {
+  std::vector<size_t> sizes;
+  for (const fs::path& model : SubModels(folder)) sizes.push_back(ImageNames(model).size());
+  return sizes;
+}
+
 }  // namespace glint

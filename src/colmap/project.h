@@ -21,4 +21,10 @@ struct ProjectPaths {
 ProjectPaths FindProject(const std::filesystem::path& project, const std::filesystem::path& images_override = {},
                          const std::filesystem::path& masks_override = {});
 
+// True if the folder is a COLMAP project in any of these layouts, sound or not.
+bool IsProject(const std::filesystem::path& folder);
+
+// How many images each model has that is a sub-folder of `folder`, in the order of their names.
+std::vector<size_t> SubModelSizes(const std::filesystem::path& folder);
+
 }  // namespace glint

@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "geometry/closest_point.h"
+#include "geometry/components.h"
 #include "geometry/self_intersections.h"
+#include "sdf/extract_mesh.h"
+#include "sdf/mesh_to_level_set.h"
 #include "seed/sparse_surface.h"
 
 namespace glint {
@@ -15,6 +18,7 @@ namespace {
 constexpr double kRegionMargin = 0.05;  // of the diagonal
 constexpr int kRounds = 3;              // of surface, fairing, and leaving out the points that it disbelieves
 constexpr int kMaxStiffenings = 4;
+constexpr double kMendVoxels = 0.7;     // edges of the smooth seed: about as fine as it is
 constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
 constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
 
@@ -43,7 +47,19 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
   return attachments;
 }
 
-// Fairs ever more stiffly until the surface does not pass through itself.
+TriangleMesh LargestPiece(const TriangleMesh& mesh) {
+  const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));
+  size_t largest = 0;
+  for (size_t k = 1; k < pieces.list.size(); ++k)
+    if (pieces.list[k].volume > pieces.list[largest].volume) largest = k;
+  TriangleMesh out = mesh;
+  out.faces.clear();
+  for (size_t f = 0; f < mesh.faces.size(); ++f)
+    if (pieces.of_face[f] == largest) out.faces.push_back(mesh.faces[f]);
+  return WithoutUnusedVertices(out);
+}
+
+// Fairs ever more stiffly until the surface does not pass through itself; if it always does, takes it by its inside.
 FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
                             const FairContext& context, FairOptions options, SeedSummary& summary) {
   FairResult result;
@@ -52,7 +68,14 @@ FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachme
     if (SelfIntersections(result.mesh, 1).empty()) return result;
     options.smoothing *= 1.6;
   }
-  summary.warnings.push_back("the smooth seed passes through itself");
+  // Its inside, by winding number, has a surface that does not.
+  const double voxel = kMendVoxels * options.edge_rel * Diagonal(result.mesh);
+  TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(result.mesh, voxel, {.sign = "winding"})));
+  if (mended.empty() || !SelfIntersections(mended, 1).empty()) {
+    summary.warnings.push_back("the smooth seed passes through itself");
+    return result;
+  }
+  result.mesh = std::move(mended);
   return result;
 }
 
@@ -78,6 +101,20 @@ double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::v
   if (distances.empty()) return 0;
   std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
   return distances[distances.size() / 2];
+}
+
+std::vector<PointFate> Fates(const PointReliability& reliability, const ObjectChoice& choice,
+                             const std::vector<uint8_t>& used) {
+  std::vector<PointFate> fate;
+  for (size_t i = 0; i < used.size(); ++i) {
+    if (reliability.status[i] != PointStatus::kReliable)
+      fate.push_back(reliability.status[i] == PointStatus::kVirtual ? PointFate::kVirtual : PointFate::kUnreliable);
+    else if (choice.role[i] == PointRole::kObject)
+      fate.push_back(used[i] ? PointFate::kUsed : PointFate::kObject);
+    else
+      fate.push_back(choice.role[i] == PointRole::kGround ? PointFate::kGround : PointFate::kContext);
+  }
+  return fate;
 }
 
 void CountPoints(const PointReliability& reliability, const ObjectChoice& choice, SeedSummary& summary) {
@@ -120,6 +157,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   out.point_used.assign(scene.points.size(), 0);
   progress.Advance();
   progress.ThrowIfCancelled();
+  out.fate = Fates(reliability, choice, out.point_used);
   if (s.num_object_points < 4) {
     s.warnings.push_back(fmt::format("only {} sparse points on the object: no seed", s.num_object_points));
     return out;
@@ -148,10 +186,11 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   out.smooth = fair.mesh;
   for (int point : surface.scene_point)
     if (point >= 0) out.point_used[point] = 1;
+  out.fate = Fates(reliability, choice, out.point_used);
   out.region = BoundingBox(out.mesh).merged(BoundingBox(out.smooth));
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kRegionMargin * Diagonal(out.smooth));
   out.region = Eigen::AlignedBox3d(out.region.min() - margin, out.region.max() + margin);
-  s.genus = GenusOf(out.mesh);
+  s.genus = GenusOf(out.smooth);
   s.smooth_residual_rel = MedianDistance(out.smooth, scene, out.point_used) / Diagonal(out.smooth);
   progress.Advance();
   return out;

@@ -28,10 +28,21 @@ struct SeedOptions {
   void Visit(OptionVisitor& v);
 };
 
+// What became of a point of the scene.
+enum class PointFate : uint8_t {
+  kUsed,    // on the seed
+  kObject,  // the object's, but the seed does not need it
+  kGround,
+  kContext,     // of something else
+  kUnreliable,  // short track, large error, narrow angle, isolated
+  kVirtual,
+};
+
 struct SeedResult {
   TriangleMesh mesh;                // the sparse surface as it is: closed, oriented outward, one piece
   TriangleMesh smooth;              // the same, faired through the points: what the level set starts on
   std::vector<uint8_t> point_used;  // per scene point: 1 for a reliable point of the object's surface
+  std::vector<PointFate> fate;      // per scene point
   Eigen::AlignedBox3d region;       // around the object (world), with a margin of 5 % of its diagonal
 };
 
@@ -42,7 +53,7 @@ struct SeedSummary {
   size_t num_object_points = 0;  // used for the surface
   bool ground_found = false;
   std::string object_chosen_by;    // "box", "masks", "ground and focus", "focus"
-  long genus = 0;                  // of both meshes
+  long genus = 0;                  // of `smooth`
   double smooth_residual_rel = 0;  // median distance of the object's points from `smooth`, fraction of its diagonal
   std::vector<std::string> warnings;
 

@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
+#include "seed/clusters.h"
 #include "seed/point_index.h"
 #include "seed/sparse_cells.h"
 
@@ -18,13 +19,20 @@ constexpr double kNearRel = 0.25;          // of the focus distance: how near th
 constexpr double kAboveGroundRel = 0.015;  // of the focus distance: matter lower than this joins neighbours on a table
 constexpr double kMaxGap = 4;              // spacings from a point to the piece that it is counted to
 
-std::vector<PointRole> RolesByBox(const Scene& scene, const std::vector<uint8_t>& use, const std::vector<double>& box) {
+bool OnGround(const std::optional<GroundPlane>& ground, const Eigen::Vector3d& x) {
+  return ground && ground->plane.signedDistance(x) < ground->tolerance;
+}
+
+std::vector<PointRole> RolesByBox(const Scene& scene, const std::vector<uint8_t>& use, const std::vector<double>& box,
+                                  const std::optional<GroundPlane>& ground) {
   const Eigen::Vector3d center(box[0], box[1], box[2]), half = Eigen::Vector3d(box[3], box[4], box[5]) / 2;
   std::vector<PointRole> role(scene.points.size(), PointRole::kUnused);
   for (size_t i = 0; i < role.size(); ++i) {
     if (!use[i]) continue;
     const bool in = ((scene.points[i].position - center).cwiseAbs().array() <= half.array()).all();
-    role[i] = in ? PointRole::kObject : PointRole::kContext;
+    role[i] = !in                                          ? PointRole::kContext
+              : OnGround(ground, scene.points[i].position) ? PointRole::kGround
+                                                           : PointRole::kObject;
   }
   return role;
 }
@@ -115,6 +123,20 @@ std::vector<uint8_t> AboveGround(const Tetrahedra& tetrahedra, const std::vector
   return above;
 }
 
+// Unseen space joins the object with what is behind it.
+void LeaveOutWhatLiesApart(const Scene& scene, ObjectChoice& choice) {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<size_t> index;
+  for (size_t i = 0; i < choice.role.size(); ++i) {
+    if (choice.role[i] != PointRole::kObject) continue;
+    points.push_back(scene.points[i].position);
+    index.push_back(i);
+  }
+  const std::vector<uint8_t> apart = LieApart(points);
+  for (size_t k = 0; k < index.size(); ++k)
+    if (apart[k]) choice.role[index[k]] = PointRole::kContext;
+}
+
 void FindByFocus(const Scene& scene, const PointReliability& reliability, const std::vector<uint8_t>& use,
                  const CutOptions& cut, ObjectChoice& choice) {
   std::vector<SparseVertex> vertices;
@@ -124,7 +146,7 @@ void FindByFocus(const Scene& scene, const PointReliability& reliability, const 
     if (!use[i]) continue;
     choice.role[i] = PointRole::kContext;
     if ((x - choice.focus.center).norm() > kReachRel * choice.focus.distance) continue;
-    const bool on_ground = choice.ground && choice.ground->plane.signedDistance(x) < choice.ground->tolerance;
+    const bool on_ground = OnGround(choice.ground, x);
     if (on_ground) choice.role[i] = PointRole::kGround;
     above_band.push_back(on_ground ? 0 : 1);
     vertices.push_back({x, static_cast<int>(i), reliability.sigma[i]});
@@ -141,6 +163,7 @@ void FindByFocus(const Scene& scene, const PointReliability& reliability, const 
   AdoptLoosePoints(t.points, above_band, piece);
   for (size_t v = 0; v < piece.size(); ++v)
     if (above_band[v] && piece[v] == object) choice.role[cells.scene_point[v]] = PointRole::kObject;
+  LeaveOutWhatLiesApart(scene, choice);
 }
 
 }  // namespace
@@ -173,7 +196,7 @@ ObjectChoice ChooseObject(const Scene& scene, const PointReliability& reliabilit
   progress.ThrowIfCancelled();
 
   if (!options.box.empty()) {
-    choice.role = RolesByBox(scene, use, options.box);
+    choice.role = RolesByBox(scene, use, options.box, choice.ground);
     choice.chosen_by = "box";
     return choice;
   }

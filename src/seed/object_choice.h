@@ -33,9 +33,10 @@ struct ObjectChoice {
   std::string chosen_by;  // "box", "masks", "ground and focus", "focus"
 };
 
-// With a box: the points in it. With masks: the points most of whose observations lie on them. Otherwise the sparse
-// surface of all that surrounds the focus is made, cut off at the ground, and the piece of it taken that has the most
-// volume near the focus. Throws InputError for a box that is not six numbers with positive sizes.
+// With a box: the points in it but those on the ground. With masks: the points most of whose observations lie on them.
+// Otherwise the sparse surface of all that surrounds the focus is made, cut off at the ground, and the piece of it
+// taken that has the most volume near the focus, without what lies apart from the rest of it. Throws InputError for a
+// box that is not six numbers with positive sizes.
 ObjectChoice ChooseObject(const Scene& scene, const PointReliability& reliability, const ObjectOptions& options,
                           const CutOptions& cut, const ImageSource* masks, Progress& progress);
 

@@ -3,6 +3,8 @@
 // against the truth where a camera sees it (distances from the truth's vertices in % of its diagonal, normals in
 // degrees) and everywhere, what became of the virtual points, and seconds of processor time.
 //   seeds [--scenes a,b] [--points 30,100] [--virtual 0,30] [--lights N] [--seed S] [--vase DIR] [--out DIR]
+// On the vase's points as they are, beside COLMAP's own mesh of them and CGAL's Poisson reconstruction of those that
+// the seed uses.
 //   seeds --projects DIR,DIR [--out DIR]
 #include <fmt/format.h>
 
@@ -31,6 +33,7 @@
 #include "pipeline/picture.h"
 #include "seed/build_seed.h"
 #include "synthetic/synthesize.h"
+#include "tests/benchmark/seeds/poisson_peer.h"
 
 namespace glint {
 namespace {
@@ -85,6 +88,48 @@ void WritePicture(const fs::path& path, const Case& c, const SeedResult& seed) {
   cv::imwrite(path.string(), sheet);
 }
 
+// Distances and normals of a mesh against the truth, with what else is to be said of it.
+void PrintRow(const Case& c, const std::string& label, const TriangleMesh& mesh, const std::string& end) {
+  const std::vector<uint16_t> views = VisibleViews(c.truth, c.scene);
+  std::vector<uint8_t> seen(views.size()), all(views.size(), 1);
+  for (size_t v = 0; v < views.size(); ++v) seen[v] = views[v] > 0;
+  const MeshComparison comparison = CompareMeshes(mesh, c.truth, {.num_samples = 20000});
+  const ErrorStats distance = DistanceStatsRel(comparison, seen);
+  const MeshChecks checks = CheckMeshSoundness(mesh);
+  const MeshChecks truth = CheckMeshSoundness(c.truth, {.self_intersections = false});
+  fmt::print("{} {:>7.3f} {:>7.3f} {:>7.2f} | {:>7.3f} {:>7.3f} | {:>6} {:>5} {:>7} |{}\n", label,
+             100 * distance.median, 100 * distance.p95, NormalStats(comparison, seen).mean,
+             100 * DistanceStatsRel(comparison, all).p95, 100 * comparison.accuracy_rel.p95,
+             checks.sound()  ? "yes"
+             : checks.closed ? "folded"
+                             : "NO",
+             checks.genus, fmt::format("({})", truth.genus), end);
+  std::fflush(stdout);
+}
+
+// What others make of the same points.
+void MeasurePeers(const Case& c, const fs::path& colmap_mesh) {
+  const SeedResult seed = BuildSeed(c.scene);
+  std::vector<Eigen::Vector3d> points, toward;
+  for (size_t i = 0; i < seed.fate.size(); ++i) {
+    if (seed.fate[i] != PointFate::kUsed && seed.fate[i] != PointFate::kObject) continue;
+    const ScenePoint& point = c.scene.points[i];
+    points.push_back(point.position);
+    Eigen::Vector3d& sum = toward.emplace_back(Eigen::Vector3d::Zero());
+    for (const Observation& o : point.observations)
+      sum += (c.scene.views[o.view].Center() - point.position).normalized();
+  }
+  const std::string label = "{:<10} {:>14} |";
+  if (fs::exists(colmap_mesh))
+    PrintRow(c, fmt::format(fmt::runtime(label), "COLMAP's", "delaunay"), ReadMesh(colmap_mesh), "");
+  const TriangleMesh poisson = benchmark::PoissonSurface(points, toward);
+  const std::string name = fmt::format(fmt::runtime(label), "CGAL's", "Poisson");
+  if (poisson.empty())
+    fmt::print("{} no surface\n", name);
+  else
+    PrintRow(c, name, poisson, "");
+}
+
 void Measure(const Case& c, const fs::path& out) {
   SeedSummary summary;
   const std::clock_t start = std::clock();
@@ -97,26 +142,12 @@ void Measure(const Case& c, const fs::path& out) {
     fmt::print("{} {}\n", label, summary.BriefReport());
     return;
   }
-  const std::vector<uint16_t> views = VisibleViews(c.truth, c.scene);
-  std::vector<uint8_t> seen(views.size()), all(views.size(), 1);
-  for (size_t v = 0; v < views.size(); ++v) seen[v] = views[v] > 0;
-  const MeshComparison comparison = CompareMeshes(seed.smooth, c.truth, {.num_samples = 20000});
-  const ErrorStats distance = DistanceStatsRel(comparison, seen);
-  const MeshChecks checks = CheckMeshSoundness(seed.smooth);
-  const MeshChecks truth = CheckMeshSoundness(c.truth, {.self_intersections = false});
   size_t virtual_used = 0, lost = 0;
   for (size_t i = 0; i < c.kind.size(); ++i) {
     virtual_used += c.kind[i] == Kind::kVirtual && seed.point_used[i];
     lost += c.kind[i] == Kind::kObject && !seed.point_used[i];
   }
-  fmt::print("{} {:>7.3f} {:>7.3f} {:>7.2f} | {:>7.3f} {:>7.3f} | {:>6} {:>5} {:>7} | {:>9} {:>8} {:>7.1f}\n", label,
-             100 * distance.median, 100 * distance.p95, NormalStats(comparison, seen).mean,
-             100 * DistanceStatsRel(comparison, all).p95, 100 * comparison.accuracy_rel.p95,
-             checks.sound()  ? "yes"
-             : checks.closed ? "folded"
-                             : "NO",
-             checks.genus, fmt::format("({})", truth.genus), virtual_used, lost, seconds);
-  std::fflush(stdout);
+  PrintRow(c, label, seed.smooth, fmt::format(" {:>9} {:>8} {:>7.1f}", virtual_used, lost, seconds));
   if (out.empty()) return;
   const std::string file = fmt::format("{}-{}-{}", c.name, Count(c, Kind::kObject), Count(c, Kind::kVirtual));
   fs::create_directories(out);
@@ -314,7 +345,9 @@ int Main(int argc, char** argv) {
   const Vase vase = ReadVase(vase_folder);
   for (const int count : points)
     for (const double percent : virtual_percent) Measure(VaseCase(vase, count, percent / 100), out);
-  Measure(VaseCase(vase, 0, 0), out);
+  const Case as_it_is = VaseCase(vase, 0, 0);
+  Measure(as_it_is, out);
+  MeasurePeers(as_it_is, vase_folder / "colmap-delaunay-sparse.ply");
   return 0;
 }
 
