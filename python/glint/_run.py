@@ -17,10 +17,16 @@ from ._project import FoundLight, Highlights, Light, Project, read_lights, write
 
 
 class RunResult:
-    """What a run left in its folder, read when it is asked for."""
+    """What a run left in its folder, read when it is asked for.
 
-    def __init__(self, out: PathLike):
+    Attributes:
+        out: the folder.
+        outcome: "done", "nothing to do", "stopped after STAGE"; of a folder that is opened later, as its report says.
+    """
+
+    def __init__(self, out: PathLike, outcome: str = ""):
         self.out = Path(out)
+        self.outcome = outcome or self.report["outcome"]
 
     @cached_property
     def report(self) -> Dict[str, Any]:
@@ -49,8 +55,8 @@ class RunResult:
 
     @cached_property
     def highlights(self) -> Highlights:
-        """Every candidate in the photographs, and what the gate said of it."""
-        file = self.out / "stages" / "highlights.json"
+        """Every candidate in the photographs, and what came of it in the end."""
+        file = self.out / "stages" / "refined_highlights.json"
         return Highlights(**_glint.read_highlights(os.fspath(file), self.report["project"]["model"]))
 
     def __repr__(self) -> str:
@@ -67,6 +73,8 @@ def run(
     mesh: Union[None, PathLike, MeshLike] = None,
     images: Optional[PathLike] = None,
     masks: Optional[PathLike] = None,
+    from_stage: str = "",
+    until: str = "",
     progress: Optional[Callable[[Event], None]] = None,
 ) -> RunResult:
     """A COLMAP project in, a better mesh out: what `glint run PROJECT -o OUT` does.
@@ -80,6 +88,9 @@ def run(
         mesh: start from this mesh in the project's frame, not from the sparse points.
         images: folder of the images, if not in the project.
         masks: folder of masks, if not in the project.
+        from_stage: do this stage ("seed", "detect", "lights", "gate", "refine", "report") and those after it in any case;
+            without it, only what is not done yet.
+        until: stop after this stage.
         progress: called with every Event, on the calling thread; what it raises ends the run.
 
     Raises:
@@ -98,9 +109,8 @@ def run(
         if mesh is not None and not isinstance(mesh, (str, os.PathLike)):
             write_mesh(Path(folder) / "mesh.ply", mesh)
             mesh = Path(folder) / "mesh.ply"
-        _glint.run(
-            os.fspath(project), os.fspath(out), os.fspath(config_file or ""), settings(config),
-            os.fspath(lights or ""), os.fspath(mesh or ""), os.fspath(images or ""), os.fspath(masks or ""),
-            teller(progress),
-        )
-    return RunResult(out)
+        given = {"project": project, "out": out, "config": config_file, "lights": lights, "mesh": mesh}
+        given.update(images=images, masks=masks)
+        paths = {name: os.fspath(path or "") for name, path in given.items()}
+        outcome = _glint.run(paths, settings(config), from_stage, until, teller(progress))
+    return RunResult(out, outcome)

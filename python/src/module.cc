@@ -1,9 +1,13 @@
 // The extension module glint._glint: Glint's stages over NumPy arrays. The package `glint` beside it is what people
 // use.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "background.h"
 #include "bindings.h"
@@ -35,39 +39,38 @@ void Translate(std::exception_ptr thrown) {
   }
 }
 
-py::dict RunProject(const RunArguments& arguments, const std::vector<std::string>& settings,
-                    const py::object& callback) {
+std::optional<RunStage> StageNamed(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  const auto found = std::find(kRunStageNames.begin(), kRunStageNames.end(), name);
+  if (found == kRunStageNames.end())
+    throw InputError("", "stage",
+                     fmt::format("expected one of {}, found \"{}\"", fmt::join(kRunStageNames, ", "), name));
+  return static_cast<RunStage>(found - kRunStageNames.begin());
+}
+
+// The paths that are not given are empty. Returns the outcome.
+std::string RunProject(const py::dict& paths, const std::vector<std::string>& settings, const std::string& from,
+                       const std::string& until, const py::object& callback) {
+  const auto path = [&](const char* name) { return paths[name].cast<std::filesystem::path>(); };
+  RunArguments arguments;
+  arguments.project = path("project");
+  arguments.out = path("out");
+  arguments.config = path("config");
+  arguments.lights = path("lights");
+  arguments.mesh = path("mesh");
+  arguments.images = path("images");
+  arguments.masks = path("masks");
+  arguments.stages = {StageNamed(from), StageNamed(until)};
+  arguments.command = "glint.run";
   const Config config = ConfigFrom(arguments.config, settings);
-  const RunSummary summary =
-      InBackground(callback, [&](Progress& progress) { return Run(arguments, config, progress); });
-  py::dict d;
-  d["model_path"] = summary.model;
-  d["outcome"] = summary.outcome;
-  return d;
+  return InBackground(callback, [&](Progress& progress) { return Run(arguments, config, progress); }).outcome;
 }
 
 }  // namespace
 
 void BindRun(py::module_& m) {
-  m.def(
-      "run",
-      [](const std::filesystem::path& project, const std::filesystem::path& out, const std::filesystem::path& config,
-         const std::vector<std::string>& settings, const std::filesystem::path& lights,
-         const std::filesystem::path& mesh, const std::filesystem::path& images, const std::filesystem::path& masks,
-         const py::object& progress) {
-        RunArguments arguments;
-        arguments.project = project;
-        arguments.out = out;
-        arguments.config = config;
-        arguments.lights = lights;
-        arguments.mesh = mesh;
-        arguments.images = images;
-        arguments.masks = masks;
-        arguments.command = "glint.run";
-        return RunProject(arguments, settings, progress);
-      },
-      py::arg("project"), py::arg("out"), py::arg("config"), py::arg("settings"), py::arg("lights"), py::arg("mesh"),
-      py::arg("images"), py::arg("masks"), py::arg("progress"));
+  m.def("run", &RunProject, py::arg("paths"), py::arg("settings"), py::arg("from_stage"), py::arg("until"),
+        py::arg("progress"));
   m.def(
       "config_yaml",
       [](const std::filesystem::path& file, const std::vector<std::string>& settings) {

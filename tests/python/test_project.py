@@ -151,13 +151,23 @@ def test_run(project, tmp_path):
     assert result.lights[0].type == "distant"
     assert len(result.highlights) > 5 and result.highlights.accepted.any()
     assert set(result.highlights.image_id) <= set(glint.read_project(project).images)
+    again = glint.run(project, tmp_path / "out", lights=lights, config=QUICK)
+    assert again.outcome == "nothing to do" and len(again.mesh.faces) == len(result.mesh.faces)
+    assert glint.RunResult(tmp_path / "out").outcome == "done"
     truth = glint.read_mesh(project / "truth" / "mesh.ply")
     assert glint.compare(result.mesh, truth, num_samples=5000).accuracy.mean < 0.02 * truth.diagonal
+
+
+def test_run_until(project, tmp_path):
+    result = glint.run(project, tmp_path / "out", config=QUICK, until="seed")
+    assert result.outcome == "stopped after seed" and len(result.seed.faces) > 10
 
 
 def test_run_errors(project, tmp_path):
     with pytest.raises(glint.InputError, match="refine.voxel_rel"):
         glint.run(project, tmp_path / "out", config={"refine.voxel_rel": 7})
+    with pytest.raises(glint.InputError, match="expected one of seed, detect, lights, gate, refine, report"):
+        glint.run(project, tmp_path / "out", until="sed")
     with pytest.raises(glint.InputError, match="nothing-here"):
         glint.run(tmp_path / "nothing-here", tmp_path / "out")
     with pytest.raises(glint.NoResultError):
