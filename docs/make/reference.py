@@ -97,6 +97,8 @@ def main():
     program, out = sys.argv[1], Path(sys.argv[2])
     out.mkdir(parents=True, exist_ok=True)
     for name, lines in (("options", options(program)), ("commands", commands(program)), ("python", python())):
+        if sum(line.startswith(("| `", "## ", "### ")) for line in lines) < 10:
+            sys.exit(f"reference.py: hardly anything is said of the {name}: has its form changed?")
         (out / f"{name}.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
