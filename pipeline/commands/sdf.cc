@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "geometry/clean_mesh.h"
 #include "io/mesh_io.h"
 #include "io/vdb_io.h"
 #include "pipeline/commands/command.h"
@@ -28,13 +29,20 @@ struct Arguments {
 
 void MakeField(const Arguments& arguments, Terminal& terminal) {
   CheckOptions(arguments.options);
+  if (!std::isfinite(arguments.voxel_rel))
+    throw InputError("", "--voxel-rel", fmt::format("expected a fraction, found {}", arguments.voxel_rel));
   const TriangleMesh mesh = ReadMesh(arguments.mesh);
+  CheckMesh(mesh);
   const Eigen::Vector3d extent = BoundingBox(mesh).sizes();
   const double voxel =
       arguments.resolution > 0 ? extent.maxCoeff() / arguments.resolution : arguments.voxel_rel * Diagonal(mesh);
   if (!(voxel > 0)) throw InputError(arguments.mesh, "", "the mesh has no extent: all its vertices coincide");
-  terminal.Info(fmt::format("{} faces, voxels of {:g}: about {:.3g} GB of memory", mesh.faces.size(), voxel,
-                            PredictBandBytes(mesh, arguments.options.half_width_voxels, voxel) / 1e9));
+  const auto gigabytes = [&](bool by_winding) {
+    return PredictBandBytes(mesh, arguments.options.half_width_voxels, voxel, by_winding) / 1e9;
+  };
+  terminal.Info(
+      fmt::format("{} faces, voxels of {:g}: about {:.3g} GB of memory, {:.3g} GB if signed by winding number",
+                  mesh.faces.size(), voxel, gigabytes(false), gigabytes(true)));
   terminal.Begin("signed distance", 0);
   SdfSummary summary;
   const LevelSet field = MeshToLevelSet(mesh, voxel, arguments.options, &summary);

@@ -87,7 +87,7 @@ bool IsSound(const TriangleMesh& mesh, size_t f, bool complain) {
     if (x.allFinite() && x.cwiseAbs().maxCoeff() <= 1e100) continue;
     if (complain)
       throw InputError("", fmt::format("vertex {}", v),
-                       fmt::format("expected finite coordinates, found ({}, {}, {})", x[0], x[1], x[2]));
+                       fmt::format("expected finite coordinates below 1e100, found ({}, {}, {})", x[0], x[1], x[2]));
     return false;
   }
   return true;

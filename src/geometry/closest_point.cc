@@ -69,10 +69,20 @@ Eigen::Vector3d Barycentric(const Eigen::Vector3d& a, const Eigen::Vector3d& b, 
   return weights;
 }
 
-std::optional<MeshPoint> ClosestPointQuery::Find(const Eigen::Vector3d& p, double max_distance) const {
+std::optional<MeshPoint> ClosestPointQuery::Find(const Eigen::Vector3d& p, double max_distance, int near_face) const {
   if (bvh_.empty()) return std::nullopt;
   const std::vector<Bvh::Node>& nodes = bvh_.nodes();
   MeshPoint best{{p, max_distance * max_distance, Feature::kFace, 0}, -1};
+  const auto look_at = [&](int f) {
+    const Eigen::Vector3i& face = mesh_->faces[f];
+    const Eigen::Vector3d &a = mesh_->vertices[face[0]], &b = mesh_->vertices[face[1]], &c = mesh_->vertices[face[2]];
+    const Eigen::Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    if ((low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm() > best.squared_distance) return;
+    const TrianglePoint q = ClosestOnTriangle(a, b, c, p);
+    const bool tie = q.squared_distance == best.squared_distance && (best.face < 0 || f < best.face);
+    if (q.squared_distance < best.squared_distance || tie) best = {q, f};
+  };
+  if (near_face >= 0) look_at(near_face);
   struct Entry {
     uint32_t node;
     double squared_distance;
@@ -84,14 +94,7 @@ std::optional<MeshPoint> ClosestPointQuery::Find(const Eigen::Vector3d& p, doubl
     const Entry entry = stack[--top];
     if (entry.squared_distance > best.squared_distance) continue;
     const Bvh::Node& node = nodes[entry.node];
-    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const int f = static_cast<int>(bvh_.faces()[i]);
-      const Eigen::Vector3i& face = mesh_->faces[f];
-      const TrianglePoint q =
-          ClosestOnTriangle(mesh_->vertices[face[0]], mesh_->vertices[face[1]], mesh_->vertices[face[2]], p);
-      const bool tie = q.squared_distance == best.squared_distance && (best.face < 0 || f < best.face);
-      if (q.squared_distance < best.squared_distance || tie) best = {q, f};
-    }
+    for (uint32_t i = node.first; i < node.first + node.count; ++i) look_at(static_cast<int>(bvh_.faces()[i]));
     if (node.count > 0) continue;
     Entry near{entry.node + 1, nodes[entry.node + 1].SquaredDistance(p)};
     Entry far{node.right, nodes[node.right].SquaredDistance(p)};

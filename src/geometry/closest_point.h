@@ -42,9 +42,10 @@ class ClosestPointQuery {
  public:
   explicit ClosestPointQuery(const TriangleMesh& mesh) : mesh_(&mesh), bvh_(mesh) {}
 
-  // Nothing if the mesh is empty or nothing lies within max_distance.
-  std::optional<MeshPoint> Find(const Eigen::Vector3d& p,
-                                double max_distance = std::numeric_limits<double>::infinity()) const;
+  // Nothing if the mesh is empty or nothing lies within max_distance. Faster if `near_face` is a face near p, such as
+  // the closest of a neighbouring point.
+  std::optional<MeshPoint> Find(const Eigen::Vector3d& p, double max_distance = std::numeric_limits<double>::infinity(),
+                                int near_face = -1) const;
 
   const Bvh& bvh() const { return bvh_; }
 

@@ -54,7 +54,7 @@ void Add(TileCounters& sum, const TileCounters& c) {
 
 class NoSide : public ExactSide {
  public:
-  bool Inside(const Eigen::Vector3i&, const uint32_t*, size_t) const override { return false; }
+  bool Inside(const Eigen::Vector3i&, const uint32_t*, size_t, KnownNormals&) const override { return false; }
 };
 
 }  // namespace

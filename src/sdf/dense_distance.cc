@@ -48,7 +48,7 @@ void Store(const Eigen::Vector3i& origin, const TileDistances& tile, const inter
 
 class NoSide : public internal::ExactSide {
  public:
-  bool Inside(const Eigen::Vector3i&, const uint32_t*, size_t) const override { return false; }
+  bool Inside(const Eigen::Vector3i&, const uint32_t*, size_t, internal::KnownNormals&) const override { return false; }
 };
 
 // Computes the tiles of a box one after another along z.

@@ -1,6 +1,7 @@
 #include "sdf/exact_side.h"
 
 #include <limits>
+#include <utility>
 
 #include "geometry/closest_point.h"
 #include "geometry/pseudo_normals.h"
@@ -24,7 +25,8 @@ Eigen::Vector3d PartOf(const TriangleMesh& mesh, const Eigen::Vector3i& face, Fe
 
 }  // namespace
 
-bool PseudoNormalSide::Inside(const Eigen::Vector3i& voxel, const uint32_t* triangles, size_t num_triangles) const {
+bool PseudoNormalSide::Inside(const Eigen::Vector3i& voxel, const uint32_t* triangles, size_t num_triangles,
+                              KnownNormals& known) const {
   const Eigen::Vector3d p = voxel.cast<double>();
   MeshPoint best{{p, std::numeric_limits<double>::infinity(), Feature::kFace, 0}, -1};
   for (size_t i = 0; i < num_triangles; ++i) {
@@ -34,15 +36,21 @@ bool PseudoNormalSide::Inside(const Eigen::Vector3i& voxel, const uint32_t* tria
     if (at.squared_distance < best.squared_distance) best = {at, static_cast<int>(triangles[i])};
   }
   const Eigen::Vector3i& closest = mesh_->faces[best.face];
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   if (best.feature == Feature::kFace) {
-    normal = AccurateNormal(mesh_->vertices[closest[0]], mesh_->vertices[closest[1]], mesh_->vertices[closest[2]]);
-  } else {
-    const int first = closest[best.corner], second = closest[(best.corner + 1) % 3];
-    for (size_t i = 0; i < num_triangles; ++i)
-      normal += PartOf(*mesh_, mesh_->faces[triangles[i]], best.feature, first, second);
+    const Eigen::Vector3d normal =
+        AccurateNormal(mesh_->vertices[closest[0]], mesh_->vertices[closest[1]], mesh_->vertices[closest[2]]);
+    return (p - best.point).dot(normal) < 0;
   }
-  return (p - best.point).dot(normal) < 0;
+  const bool is_edge = best.feature == Feature::kEdge;
+  int first = closest[best.corner], second = is_edge ? closest[(best.corner + 1) % 3] : -1;
+  if (is_edge && second < first) std::swap(first, second);
+  KnownNormals::Entry& entry = known.At(first, second);
+  if (entry.first != first || entry.second != second) {
+    entry = {first, second, Eigen::Vector3d::Zero()};
+    for (size_t i = 0; i < num_triangles; ++i)
+      entry.normal += PartOf(*mesh_, mesh_->faces[triangles[i]], best.feature, first, second);
+  }
+  return (p - best.point).dot(entry.normal) < 0;
 }
 
 }  // namespace glint::internal

@@ -12,7 +12,8 @@ namespace glint::internal {
 class PseudoNormalSide : public ExactSide {
  public:
   explicit PseudoNormalSide(const TriangleMesh& mesh_in_index) : mesh_(&mesh_in_index) {}
-  bool Inside(const Eigen::Vector3i& voxel, const uint32_t* triangles, size_t num_triangles) const override;
+  bool Inside(const Eigen::Vector3i& voxel, const uint32_t* triangles, size_t num_triangles,
+              KnownNormals& known) const override;
 
  private:
   const TriangleMesh* mesh_;

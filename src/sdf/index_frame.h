@@ -5,8 +5,8 @@
 
 namespace glint::internal {
 
-// The edge length of the voxels. Throws InputError unless the transform is a rotation, a positive uniform scale that
-// OpenVDB can hold, and a translation.
+// The edge length of the voxels. Throws InputError unless the transform is a rotation, a positive uniform scale and a
+// translation.
 double VoxelSizeOf(const Eigen::Affine3d& world_from_index);
 
 }  // namespace glint::internal

@@ -48,7 +48,8 @@ openvdb::math::Transform::Ptr ToVdb(const Eigen::Affine3d& world_from_index, dou
 
 // Makes the band by the method asked for; "auto" tries pseudo-normals and looks at what comes out.
 openvdb::FloatGrid::Ptr MakeBand(const internal::BandMaker& maker, const internal::PreparedMesh& prepared,
-                                 const std::string& sign, float voxel_size, SdfSummary& summary) {
+                                 const SdfOptions& options, float voxel_size, SdfSummary& summary) {
+  const std::string& sign = options.sign;
   summary.sign = sign;
   summary.reason = "as asked";
   if (sign == "unsigned") return maker.Unsigned();
@@ -67,6 +68,8 @@ openvdb::FloatGrid::Ptr MakeBand(const internal::BandMaker& maker, const interna
         "the mesh is closed, but pseudo-normals put {} pairs of neighbouring voxels away from the surface on different "
         "sides: faces pass through each other, or components are inside out or inside others",
         conflicts);
+    grid.reset();
+    summary.predicted_bytes = CheckGridFits(prepared.mesh, options.half_width_voxels, options.max_memory_gb, true);
     return maker.ByWinding();
   }
   summary.sign = "pseudonormal";
@@ -79,17 +82,22 @@ openvdb::FloatGrid::Ptr MakeBand(const internal::BandMaker& maker, const interna
 LevelSet MeshToLevelSet(const TriangleMesh& mesh, const Eigen::Affine3d& world_from_index, const SdfOptions& options,
                         SdfSummary* summary, std::vector<VoxelClosest>* closest) {
   const double voxel_size = internal::VoxelSizeOf(world_from_index);
+  if (voxel_size < kSmallestVoxelWorld)
+    throw InputError("", "voxel size",
+                     fmt::format("expected at least {} (the smallest that OpenVDB can hold), found {:g}; "
+                                 "scale the mesh up",
+                                 kSmallestVoxelWorld, voxel_size));
   const std::vector<std::string> violations = Violations(options);
   if (!violations.empty()) throw InputError("", "signed distance options", violations.front());
   const internal::PreparedMesh prepared = internal::PrepareMesh(mesh, world_from_index.inverse());
-  CheckGridFits(prepared.mesh, options.half_width_voxels, options.max_memory_gb);
+  const bool by_winding = options.sign == "winding" || (options.sign == "auto" && !prepared.balanced);
+  SdfSummary story;
+  story.predicted_bytes = CheckGridFits(prepared.mesh, options.half_width_voxels, options.max_memory_gb, by_winding);
   internal::BandMaker maker(prepared, options.half_width_voxels, voxel_size);
   if (closest) maker.SetClosest(*closest);
-  SdfSummary story;
   story.turned = prepared.turned;
   story.degenerate_faces = prepared.collapsed_faces;
-  story.predicted_bytes = PredictBandBytes(prepared.mesh, options.half_width_voxels);
-  const openvdb::FloatGrid::Ptr grid = MakeBand(maker, prepared, options.sign, static_cast<float>(voxel_size), story);
+  const openvdb::FloatGrid::Ptr grid = MakeBand(maker, prepared, options, static_cast<float>(voxel_size), story);
   story.active_voxels = grid->activeVoxelCount();
   grid->setTransform(ToVdb(world_from_index, voxel_size));
   grid->setGridClass(options.sign == "unsigned" ? openvdb::GRID_UNKNOWN : openvdb::GRID_LEVEL_SET);

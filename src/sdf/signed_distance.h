@@ -14,7 +14,7 @@
 namespace glint {
 
 // Distance ‖r‖ sign(r·N) of points in double [BA05], negative inside. `sign` as in SdfOptions. Keeps its own copy of
-// the mesh. Queries are thread-safe. Throws InputError for bad meshes.
+// the mesh. Queries are thread-safe. Throws InputError for bad meshes, and for points that are not finite.
 class SignedDistanceQuery {
  public:
   SignedDistanceQuery(const TriangleMesh& mesh, const std::string& sign);
@@ -35,6 +35,9 @@ class SignedDistanceQuery {
 
   bool Inside(const Eigen::Vector3d& p) const;  // by the chosen method
 
+  // Of many points; any of them may be far from any other.
+  std::vector<double> Distances(const std::vector<Eigen::Vector3d>& points) const;
+
   const std::string& method() const { return summary().sign; }
   const SdfSummary& summary() const;
 
@@ -43,7 +46,7 @@ class SignedDistanceQuery {
   std::unique_ptr<Impl> impl_;
 };
 
-// Signed distances of many points, in parallel.
+// Signed distances of many points, in parallel: each search starts from what a point nearby has found.
 std::vector<double> SignedDistance(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& points,
                                    const std::string& sign = "auto", SdfSummary* summary = nullptr);
 

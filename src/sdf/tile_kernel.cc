@@ -70,7 +70,7 @@ void ComputeBlock(const Tile& tile, int block, size_t num_candidates, const Exac
     for (size_t i = 0; i < num_candidates; ++i)
       if (scratch.squared[i].lane[l] <= limit) scratch.ties.push_back(scratch.tile_ids[scratch.candidates[i]]);
     const Eigen::Vector3i voxel = tile.origin + first + Eigen::Vector3i(l >> 3, l >> 2 & 1, l & 3);
-    const bool negative = exact.Inside(voxel, scratch.ties.data(), scratch.ties.size());
+    const bool negative = exact.Inside(voxel, scratch.ties.data(), scratch.ties.size(), scratch.known);
     inside = (inside & ~(1u << l)) | static_cast<uint32_t>(negative) << l;
   }
   for (size_t chunk = 0; chunk < 16; chunk += lanes) {
@@ -93,6 +93,7 @@ void ComputeTileImpl(const Tile& tile, const ExactSide& exact, TileScratch& scra
   std::memset(out.active, 0, sizeof out.active);
   std::memset(out.inside, 0, sizeof out.inside);
   out.any_active = false;
+  scratch.known = {};
   ++scratch.counters.tiles;
   size_t n = tile.num_triangles;
   scratch.counters.tile_triangles += n;

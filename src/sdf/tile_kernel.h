@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,12 +32,26 @@ struct Tile {
   bool wants_closest = false;  // fill in TileDistances::closest
 };
 
+// Pseudo-normals that came up in a tile: neighbouring voxels have the closest feature in common.
+struct KnownNormals {
+  struct Entry {
+    int first = -1, second = -1;  // vertices of an edge; a vertex has no second
+    Eigen::Vector3d normal;
+  };
+  std::array<Entry, 32> entries;
+
+  Entry& At(int first, int second) {
+    return entries[(7 * static_cast<size_t>(first) + static_cast<size_t>(second + 1)) % entries.size()];
+  }
+};
+
 // Decides the voxels that single precision cannot.
 class ExactSide {
  public:
   virtual ~ExactSide() = default;
   // True if the voxel is inside, given every triangle that may be closest to it.
-  virtual bool Inside(const Eigen::Vector3i& voxel, const uint32_t* triangles, size_t num_triangles) const = 0;
+  virtual bool Inside(const Eigen::Vector3i& voxel, const uint32_t* triangles, size_t num_triangles,
+                      KnownNormals& known) const = 0;
 };
 
 struct TileDistances {
@@ -65,6 +80,7 @@ struct TileScratch {
   std::vector<uint32_t> tile_ids;     // the triangles by their place in the arrays above
   std::vector<uint32_t> kept, candidates, ties;
   std::vector<uint32_t> wanted;  // of each triangle: a bit for each block that needs it
+  KnownNormals known;            // of the current tile
   TileCounters counters;
 };
 

@@ -108,6 +108,8 @@ TEST(ClosestPointQuery, AsBruteForce) {
     const auto at = query.Find(p);
     ASSERT_TRUE(at.has_value());
     EXPECT_EQ(at->squared_distance, best);
+    const int anywhere = static_cast<int>(random() % mesh.faces.size());
+    EXPECT_EQ(query.Find(p, 10, anywhere)->squared_distance, best);
     EXPECT_FALSE(query.Find(p, 0.999 * std::sqrt(best)).has_value());
     EXPECT_TRUE(query.Find(p, 1.001 * std::sqrt(best)).has_value());
   }

@@ -47,7 +47,7 @@ TEST(DenseDistance, ExactFarAndNear) {
 }
 
 TEST(DenseDistance, ScalesAndOffsets) {
-  for (double scale : {1e-3, 1.0, 1e6}) {
+  for (double scale : {1e-8, 1e-3, 1.0, 1e6}) {
     const Eigen::Vector3d offset = scale * 1e6 * Eigen::Vector3d(1, -0.7, 0.3);
     ExpectTrue(testing::Transformed(testing::SpikySphere(2, 0.5, 4), scale, offset),
                Frame(0.2 * scale, offset - 1.6 * scale * Eigen::Vector3d::Ones()), {16, 16, 16}, "auto");

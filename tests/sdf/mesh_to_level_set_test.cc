@@ -96,7 +96,16 @@ TEST(MeshToLevelSet, SpikyMeshes) {
   }
 }
 
-TEST(MeshToLevelSet, ManyTrianglesAVoxel) { ExpectTrue(testing::SpikySphere(5, 0.01, 1), 0.1, {}); }
+TEST(MeshToLevelSet, ManyTrianglesAVoxel) {
+  ExpectTrue(testing::SpikySphere(5, 0.01, 1), 0.1, {});
+  ExpectTrue(testing::SpikySphere(5, 0.3, 2), 0.08, {.sign = "pseudonormal"});
+  ExpectTrue(testing::SpikySphere(4, 0.1, 3), 0.1, {.half_width_voxels = 8});
+}
+
+TEST(MeshToLevelSet, LargeAndTinyTrianglesInOneTile) {
+  const TriangleMesh plate = Box({-4, -3, -2}, {3, 4, -1.1});
+  ExpectTrue(testing::Joined(plate, testing::Icosphere(4)), 0.15, {.half_width_voxels = 4});
+}
 
 TEST(MeshToLevelSet, ScalesAndOffsets) {
   for (double scale : {1e-3, 1.0, 1e6})

@@ -115,6 +115,16 @@ TEST(SignedDistance, ClosestFeatureOfEveryVoxel) {
   }
 }
 
+TEST(SignedDistance, PointsInAPlaneAndInOnePlace) {
+  const TriangleMesh mesh = testing::SpikySphere(2, 0.6, 3);
+  auto points = Points(300, 2);
+  for (size_t i = 0; i < points.size(); ++i) points[i][2] = 0.1;
+  points.insert(points.end(), 5, points[7]);
+  const std::vector<double> d = SignedDistance(mesh, points, "pseudonormal");
+  for (size_t i = 0; i < points.size(); ++i)
+    EXPECT_NEAR(std::abs(d[i]), testing::BruteDistance(mesh, points[i]), 1e-12);
+}
+
 TEST(SignedDistance, ReachIsKept) {
   const SignedDistanceQuery query(testing::Icosphere(3), "pseudonormal");
   EXPECT_FALSE(query.Find({3, 0, 0}, 1).has_value());
@@ -137,6 +147,10 @@ TEST(SignedDistance, BadInputIsRefused) {
   box.vertices[2][0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(SignedDistance(box, {{0, 0, 0}}), InputError);
   EXPECT_TRUE(SignedDistance(testing::Icosphere(1), {}).empty());
+  for (double bad : {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(SignedDistance(testing::Icosphere(1), {{0, 0, 0}, {0, bad, 0}}), InputError);
+    EXPECT_THROW(SignedDistanceQuery(testing::Icosphere(1), "auto").FindClosest({bad, 0, 0}), InputError);
+  }
 }
 
 }  // namespace

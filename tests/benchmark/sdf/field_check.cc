@@ -23,6 +23,8 @@ std::vector<const Leaf*> SomeLeaves(const LevelSet& field, double wanted) {
   return some;
 }
 
+}  // namespace
+
 FieldErrors operator+(const FieldErrors& a, const FieldErrors& b) {
   return {a.distances + b.distances,
           std::max(a.worst_rel, b.worst_rel),
@@ -32,8 +34,6 @@ FieldErrors operator+(const FieldErrors& a, const FieldErrors& b) {
           a.wrong_signs + b.wrong_signs,
           a.on_surface + b.on_surface};
 }
-
-}  // namespace
 
 FieldErrors CheckField(const TriangleMesh& mesh, const LevelSet& field, const BruteForce& brute,
                        const ExactSides* sides, double pairs, size_t max_signs) {

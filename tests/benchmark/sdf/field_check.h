@@ -19,6 +19,8 @@ struct FieldErrors {
   size_t on_surface = 0;  // so near that rounding of the coordinates decides; left out
 };
 
+FieldErrors operator+(const FieldErrors& a, const FieldErrors& b);
+
 // `pairs`: triangles times voxels to spend on brute force. Every voxel of every leaf has its sign checked, up to
 // max_signs of them.
 FieldErrors CheckField(const TriangleMesh& mesh, const LevelSet& field, const BruteForce& brute,

@@ -1,4 +1,5 @@
-// What no method can do without: the leaves, and one look at one triangle a voxel.
+#include "tests/benchmark/sdf/floor.h"
+
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
@@ -11,7 +12,6 @@
 #include "sdf/tile_kernel.h"
 #include "tests/benchmark/sdf/measure.h"
 #include "tests/benchmark/sdf/meshes.h"
-#include "tests/benchmark/sdf/workloads.h"
 
 namespace glint::benchmark {
 
@@ -63,7 +63,9 @@ double TileNanoseconds(size_t n) {
   std::vector<uint32_t> all(n);
   for (size_t i = 0; i < n; ++i) all[i] = static_cast<uint32_t>(i);
   class Nobody : public internal::ExactSide {
-    bool Inside(const Eigen::Vector3i&, const uint32_t*, size_t) const override { return false; }
+    bool Inside(const Eigen::Vector3i&, const uint32_t*, size_t, internal::KnownNormals&) const override {
+      return false;
+    }
   } nobody;
   const internal::Tile tile{vertices.data(), faces.data(), all.data(), n, Eigen::Vector3i::Zero(), 20, false};
   internal::TileScratch scratch;
@@ -78,6 +80,27 @@ double TileNanoseconds(size_t n) {
   return 1e9 * cost.cpu_s / kTimes;
 }
 
+// Peak bytes of a band at 512 voxels across, beyond the mesh; of the field alone in `field_bytes`.
+double PeakBytes(const TriangleMesh& mesh, double* voxels, double* field_bytes) {
+  LevelSet field;
+  const double h = BoundingBox(mesh).sizes().maxCoeff() / 512;
+  const Cost cost = Measure(
+      1, [&] { field = MeshToLevelSet(mesh, h); }, [] {});
+  *voxels = static_cast<double>(field.num_active_voxels());
+  *field_bytes = static_cast<double>(field.memory_bytes());
+  return cost.peak_bytes;
+}
+
+// Two meshes of the same shape, so nearly the same voxels: what the one takes more is its triangles'.
+void PrintMemory() {
+  double voxels, field_bytes, unused;
+  const TriangleMesh coarse = MakeMesh("smooth:10000", {}), fine = MakeMesh("smooth:1000000", {});
+  const double few = PeakBytes(coarse, &voxels, &field_bytes), many = PeakBytes(fine, &unused, &unused);
+  fmt::print(
+      "memory: {:.1f} bytes an active voxel at the peak, of which the field keeps {:.1f}; {:.0f} bytes a triangle\n",
+      few / voxels, field_bytes / voxels, (many - few) / static_cast<double>(fine.faces.size() - coarse.faces.size()));
+}
+
 }  // namespace
 
 void PrintFloor() {
@@ -86,6 +109,7 @@ void PrintFloor() {
   MeasureLeaves(MeshToLevelSet(mesh, BoundingBox(mesh).sizes().maxCoeff() / 512));
   fmt::print("the kernel: one voxel, one triangle    {:6.2f} ns\n",
              (TileNanoseconds(24) - TileNanoseconds(8)) / (16.0 * internal::kTileVoxels));
+  PrintMemory();
 }
 
 }  // namespace glint::benchmark

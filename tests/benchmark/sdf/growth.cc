@@ -67,8 +67,8 @@ cv::Mat Draw(const std::vector<Sample>& samples, int low_x, int decades, const s
   }
   Text(image, title, kLeft, kTop - 12);
   if (!samples.empty()) {
-    Text(image, "Glint", px(samples.back().x) - 40, py(samples.back().glint_s) + 18);
-    Text(image, "OpenVDB", px(samples.back().x) - 60, py(samples.back().openvdb_s) - 8);
+    Text(image, "Glint", px(samples.back().x) + 6, py(samples.back().glint_s) + 4);
+    Text(image, "OpenVDB", px(samples.back().x) + 6, py(samples.back().openvdb_s) + 4);
   }
   return image;
 }

@@ -71,12 +71,4 @@ TriangleMesh MakeMesh(const std::string& name, const std::filesystem::path& fold
   return mesh;
 }
 
-std::vector<std::string> DefaultMeshes(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  for (const char* file : {"spot.obj", "fertility.off", "nefertiti.obj", "armadillo.obj", "thingi/472042.stl"})
-    if (std::filesystem::exists(folder / file)) names.push_back(file);
-  for (const char* made : {"smooth:10000", "spiky:20000", "scan:300000", "smooth:3000000"}) names.push_back(made);
-  return names;
-}
-
 }  // namespace glint::benchmark

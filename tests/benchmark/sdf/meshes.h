@@ -13,7 +13,4 @@ namespace glint::benchmark {
 // vertices) are closed spheres of about N triangles; anything else is a file.
 TriangleMesh MakeMesh(const std::string& name, const std::filesystem::path& folder);
 
-// The files used where they are present: closed meshes of the folder.
-std::vector<std::string> DefaultMeshes(const std::filesystem::path& folder);
-
 }  // namespace glint::benchmark
