@@ -85,7 +85,8 @@ Json ToJson(const StepSummary& step) {
 }
 
 Json ToJson(const RefineSummary& refine) {
-  Json json = {{"highlights", refine.num_highlights},
+  Json json = {{"bends_like_seed", refine.bends_like_seed},
+               {"highlights", refine.num_highlights},
                {"contacts", refine.num_contacts},
                {"points", refine.num_points},
                {"converged", refine.converged},

@@ -45,7 +45,7 @@ Eigen::Vector3d ContactNormal(const Contact& contact, const Light& light);
 double Incidence(const Contact& contact, const Light& light);
 
 struct ContactOptions {
-  double sigma_normal_deg = 0.5;
+  double sigma_normal_deg = 0.25;
   double max_incidence_deg = 65;
   void Visit(OptionVisitor& v);
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 
@@ -10,6 +11,12 @@ namespace glint {
 void LevelSetOptions::Visit(OptionVisitor& v) {
   v.Field({.name = "smoothness", .help = "weight of the squared Hessian over the surface", .min = 1e-6, .max = 1e6},
           smoothness);
+  v.Field({.name = "smoothness_length_rel",
+           .help = "longer than this, changes of the bend weigh more than the bend itself; 0: only the bend does",
+           .unit = "fraction of the diagonal",
+           .min = 0,
+           .max = 10},
+          smoothness_length_rel);
   v.Field({.name = "normal_weight",
            .help = "weight that keeps the field a distance along its normals",
            .min = 0,
@@ -150,7 +157,8 @@ Constraints BuildConstraints(const Band& band, const std::vector<OrientedPoint>&
       }
       c.EndGroup(first, false);
       first = c.rows.size();
-      if (AddValueRow(band, contact.bundle_position, options.highlight_weight / std::pow(contact.sigma_position, 2),
+      if (contact.sigma_position > 0 &&
+          AddValueRow(band, contact.bundle_position, options.highlight_weight / std::pow(contact.sigma_position, 2),
                       c.rows))
         c.EndGroup(first, false);
     }
@@ -180,16 +188,31 @@ std::vector<float> SeedTrust(const Band& band, const std::vector<OrientedPoint>&
   return trust;
 }
 
-BandWeights MakeWeights(const Band& band, const LevelSet& surface, const LevelSet& seed, double surface_area,
-                        const std::vector<OrientedPoint>& contacts, const LevelSetOptions& options) {
+// Of the seed, averaged over the next voxels (1 2 1 along each axis), so that the facets of its mesh are not taken for
+// bends. Linear functions stay; what quadratic ones shift by does not bend.
+float SmoothValue(const LevelSet& seed, const Eigen::Vector3d& x) {
+  double sum = 0;
+  for (int i = -1; i <= 1; ++i)
+    for (int j = -1; j <= 1; ++j)
+      for (int k = -1; k <= 1; ++k)
+        sum += (2 - std::abs(i)) * (2 - std::abs(j)) * (2 - std::abs(k)) *
+               seed.Value(x + seed.voxel_size() * Eigen::Vector3d(i, j, k));
+  return static_cast<float>(sum / 64);
+}
+
+BandWeights MakeWeights(const Band& band, const LevelSet& surface, const LevelSet& seed, bool bend_like_seed,
+                        double surface_area, const std::vector<OrientedPoint>& contacts,
+                        const LevelSetOptions& options) {
   const double h = band.voxel_size();
   const double area = surface_area / static_cast<double>(band.size());  // a voxel's share of the surface integral
   BandWeights weights;
   weights.smoothness = options.smoothness * area / std::pow(h, 4);
+  weights.bend_change = weights.smoothness * std::pow(options.smoothness_length_rel / h, 2);
   weights.normal = options.normal_weight * area / (h * h);
   weights.n.resize(band.size());
   weights.pull.resize(band.size());
   weights.pull_target.resize(band.size());
+  if (bend_like_seed) weights.reference.resize(band.size());
   static const std::vector<OrientedPoint> kNone;
   const std::vector<float> trust = SeedTrust(band, options.highlight_weight > 0 ? contacts : kNone);
   const double mu = 1 / std::pow(options.seed_sigma_rel * options.seed_length_rel, 2);
@@ -200,16 +223,17 @@ BandWeights MakeWeights(const Band& band, const LevelSet& surface, const LevelSe
     const double length = g.norm();
     weights.n[i] = (length > 1e-12 ? Eigen::Vector3d(g / length) : Eigen::Vector3d::Zero()).cast<float>();
     const double value = seed.Value(x);
-    const bool known = std::abs(value) < 0.98 * background;
+    const bool known = std::abs(value) < background - 2 * h;
     weights.pull[i] = known ? static_cast<float>(mu * area * trust[i]) : 0;
     weights.pull_target[i] = static_cast<float>(value);
+    if (bend_like_seed) weights.reference[i] = known ? SmoothValue(seed, x) : std::numeric_limits<float>::quiet_NaN();
   });
   return weights;
 }
 
 }  // namespace
 
-LevelSet VariationalStep(const LevelSet& surface, const LevelSet& seed, double surface_area,
+LevelSet VariationalStep(const LevelSet& surface, const LevelSet& seed, bool bend_like_seed, double surface_area,
                          const std::vector<OrientedPoint>& contacts, const std::vector<SurfacePoint>& points,
                          const LevelSetOptions& options, StepSummary* summary) {
   StepSummary local;
@@ -217,8 +241,9 @@ LevelSet VariationalStep(const LevelSet& surface, const LevelSet& seed, double s
   report = {};
   const Band band(surface);
   report.num_voxels = band.size();
-  BandSystem system(band, MakeWeights(band, surface, seed, surface_area, contacts, options));
   Constraints constraints = BuildConstraints(band, contacts, points, options, report);
+  BandSystem system(band, MakeWeights(band, surface, seed, bend_like_seed, surface_area, contacts, options),
+                    constraints.rows);
   std::vector<double> phi(band.phi().begin(), band.phi().end());
   for (int k = 0; k < options.reweightings; ++k) {
     for (const auto& [first, last, is_point] : constraints.groups) {
@@ -231,7 +256,7 @@ LevelSet VariationalStep(const LevelSet& surface, const LevelSet& seed, double s
       const double weight = is_point ? PointWeight(squared) : (k == 0 ? 1 : ContactWeight(squared));
       for (size_t r = first; r < last; ++r) constraints.rows.weight[r] = weight * constraints.base_weight[r];
     }
-    system.SetRows(constraints.rows);
+    system.SetRowWeights(constraints.rows.weight);
     const SolveReport solve = system.Solve(options.max_iterations, options.tolerance, phi);
     if (k == 0) report.energy_before = solve.initial_energy;
     report.energy_after = solve.final_energy;

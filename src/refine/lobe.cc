@@ -18,19 +18,27 @@ std::optional<Lobe> LayLobe(const Contact& contact, const Light& light, const Tr
                             const RayCaster& caster) {
   Lobe lobe;
   const Eigen::Vector3d half = HalfVector(light, contact.cam_from_world, contact.SurfacePosition());
-  Eigen::Matrix<double, 3, 2> tangents;
-  tangents.col(0) = half.unitOrthogonal();
-  tangents.col(1) = half.cross(tangents.col(0));
+  lobe.tangents.col(0) = half.unitOrthogonal();
+  lobe.tangents.col(1) = half.cross(lobe.tangents.col(0));
   std::array<Eigen::Vector2d, 4> deviation;
   for (int k = 0; k < 4; ++k) {
     const auto hit = caster.Intersect(contact.origin, contact.axis_rays[k]);
     if (!hit) return std::nullopt;
-    deviation[k] =
-        tangents.transpose() * (NormalAt(surface, *hit) - HalfVector(light, contact.cam_from_world, hit->position));
+    lobe.position[k] = hit->position;
+    lobe.half[k] = HalfVector(light, contact.cam_from_world, hit->position);
+    deviation[k] = lobe.tangents.transpose() * (NormalAt(surface, *hit) - lobe.half[k]);
   }
   lobe.turn.col(0) = 0.5 * (deviation[0] - deviation[1]);
   lobe.turn.col(1) = 0.5 * (deviation[2] - deviation[3]);
   return lobe;
+}
+
+std::array<Eigen::Vector3d, 4> Lobe::NormalsAtEnds(double width) const {
+  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix2d round = width * svd.matrixU() * svd.matrixV().transpose();
+  std::array<Eigen::Vector3d, 4> normals;
+  for (int k = 0; k < 4; ++k) normals[k] = (half[k] + (k % 2 ? -1.0 : 1.0) * tangents * round.col(k / 2)).normalized();
+  return normals;
 }
 
 }  // namespace glint

@@ -19,8 +19,15 @@ struct Lobe {
   // Column k: how far the normal turns against the half vector along axis k of the blob, from its centre to one
   // standard deviation; radians, in two tangents of the surface at the peak.
   Eigen::Matrix2d turn;
+  Eigen::Matrix<double, 3, 2> tangents;
+  // Where the rays through the ends of the axes (+a, -a, +b, -b) meet the surface, and the half vectors there.
+  std::array<Eigen::Vector3d, 4> position, half;
 
   double Width() const { return std::sqrt(std::abs(turn.determinant())); }
+
+  // The normals at the four ends if the lobe is round and `width` wide: the turn becomes the closest one that takes
+  // both axes equally far. Each end says how curved the surface is along its axis.
+  std::array<Eigen::Vector3d, 4> NormalsAtEnds(double width) const;
 };
 
 // nullopt where a ray through an end of the blob misses the surface. The contact's prior depth is on it. `surface`

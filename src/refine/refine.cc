@@ -21,6 +21,7 @@
 #include "refine/normalized.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
+#include "sdf/rebuild.h"
 
 namespace glint {
 
@@ -49,6 +50,13 @@ void RefineOptions::Visit(OptionVisitor& v) {
           min_point_sigma_rel);
   v.Field({.name = "use_highlights", .help = "false: points and smoothness alone, to see what the highlights add"},
           use_highlights);
+  v.Field({.name = "use_lobes", .help = "the shapes of the highlights too, not only their peaks"}, use_lobes);
+  v.Field(
+      {.name = "bend",
+       .help = "what costs no bending: seed: to bend like the seed; flat: not to bend; auto: what the constraints are "
+               "better explained by",
+       .choices = {"auto", "seed", "flat"}},
+      bend);
   v.Field({.name = "lights",
            .help = "fixed: as given; solve: refined jointly; auto: those with a standard deviation are solved",
            .choices = {"auto", "fixed", "solve"}},
@@ -67,6 +75,9 @@ constexpr double kMinWidthShare = 0.45;
 constexpr double kMaxWidthShare = 4;
 // A highlight that was left out for its size comes back only when it fits clearly, so that it does not come and go.
 constexpr double kReturnMargin = 1.5;
+// Standard deviation of a normal at a blob's end: the blob is not quite the lobe's.
+constexpr double kLeastLobeSigma = 0.25 * kRadians;
+constexpr double kLobeSigmaShare = 0.08;
 // The errors of the bundle's depths are alike over whole regions, which their standard deviations do not say. Where
 // points are dense they decide; far from points the bundle does.
 constexpr double kBundleCaution = 3;
@@ -99,6 +110,7 @@ class Refiner {
     seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
     seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
     surface_ = seed_;
+    summary_.bends_like_seed = options.bend != "flat";
     for (const Light& light : input.lights) {
       lights_.push_back(frame_.FromWorld(light));
       solve_lights_.push_back(options.lights == "solve" || (options.lights == "auto" && light.sigma > 0));
@@ -129,10 +141,13 @@ class Refiner {
  private:
   void MakePoints();
   bool RunLevel(double voxel);
+  LevelSet Step(const LevelSet& seed_field, bool undecided, StepSummary& summary);
+  void TakeSurface(const LevelSet& stepped, const SdfOptions& sdf);
   double UpdateContacts(const LevelSet& field, IterationSummary& iteration);
   void MeasureLobes(const RayCaster& caster);
   void UpdatePoints(const LevelSet& field);
   std::vector<OrientedPoint> OrientedPoints() const;
+  void AddLobes(std::vector<OrientedPoint>& oriented) const;
   void Finish(RefineResult& result);
 
   const RefineInput& input_;
@@ -140,6 +155,7 @@ class Refiner {
   Progress& progress_;
   const UnitFrame frame_;
   TriangleMesh seed_, surface_;
+  LevelSet field_;  // of the surface; empty before the first step
   std::vector<Light> lights_, known_lights_;
   std::vector<bool> solve_lights_;
   std::vector<Contact> contacts_;
@@ -232,6 +248,27 @@ void Refiner::UpdatePoints(const LevelSet& field) {
   }
 }
 
+// The ends of each blob's axes, whose normals its size tells: what the peaks say of the slopes, these say of the
+// curvatures.
+void Refiner::AddLobes(std::vector<OrientedPoint>& oriented) const {
+  const double sigma = std::max(kLeastLobeSigma, kLobeSigmaShare * lobe_width_);
+  size_t parent = 0;
+  for (size_t i = 0; i < contacts_.size(); ++i) {
+    if (!contacts_[i].accepted) continue;
+    const OrientedPoint peak = oriented[parent++];
+    if (!lobes_[i]) continue;
+    const std::array<Eigen::Vector3d, 4> normals = lobes_[i]->NormalsAtEnds(lobe_width_);
+    for (int k = 0; k < 4; ++k) {
+      OrientedPoint end = peak;
+      end.position = lobes_[i]->position[k];
+      end.normal = normals[k];
+      end.sigma_position = 0;
+      end.sigma_normal = std::hypot(peak.sigma_normal, sigma);
+      oriented.push_back(end);
+    }
+  }
+}
+
 std::vector<OrientedPoint> Refiner::OrientedPoints() const {
   std::vector<OrientedPoint> oriented;
   for (const Contact& contact : contacts_) {
@@ -254,7 +291,34 @@ std::vector<OrientedPoint> Refiner::OrientedPoints() const {
     std::nth_element(distances.begin(), distances.begin() + k, distances.end());
     p.reach = std::clamp(distances[k], 0.02, 0.12);
   }
+  if (options_.use_lobes) AddLobes(oriented);
   return oriented;
+}
+
+// A faired seed bends much as the object does, a raw mesh is rough: the first step of each level
+// tells which it is, at the roughness that its voxels resolve.
+LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& summary) {
+  const std::vector<OrientedPoint> oriented = OrientedPoints();
+  const double area = SurfaceArea(surface_);
+  const auto step = [&](bool bend_like_seed, StepSummary& report) {
+    return VariationalStep(field_, seed_field, bend_like_seed, area, oriented, points_, options_.level_set, &report);
+  };
+  LevelSet stepped = step(summary_.bends_like_seed, summary);
+  if (!undecided || !summary_.bends_like_seed || options_.bend != "auto") return stepped;
+  StepSummary flat_summary;
+  LevelSet flat = step(false, flat_summary);
+  if (summary.energy_after <= flat_summary.energy_after) return stepped;
+  summary_.bends_like_seed = false;
+  summary = flat_summary;
+  return flat;
+}
+
+// True distances again, from the smooth zero set: from a mesh its facets would show in the normals.
+void Refiner::TakeSurface(const LevelSet& stepped, const SdfOptions& sdf) {
+  const TriangleMesh extracted = ExtractMesh(stepped);
+  surface_ = WithoutCrumbs(extracted);
+  field_ = surface_.faces.size() == extracted.faces.size() ? Redistance(stepped, sdf.half_width_voxels)
+                                                           : MeshToLevelSet(surface_, stepped.voxel_size(), sdf);
 }
 
 bool Refiner::RunLevel(double voxel) {
@@ -263,17 +327,17 @@ bool Refiner::RunLevel(double voxel) {
   const LevelSet seed_field = MeshToLevelSet(seed_, voxel, sdf);
   // On the coarse levels contacts may still lie a few voxels off the surface.
   sdf.half_width_voxels = options_.half_width_voxels + (voxel > 1.5 * options_.voxel_rel ? 2 : 0);
+  if (!field_.empty()) field_ = Resample(field_, voxel, sdf.half_width_voxels);
   for (int k = 0; k < options_.max_iterations; ++k) {
     progress_.ThrowIfCancelled();
     const auto start = std::chrono::steady_clock::now();
     IterationSummary iteration;
     iteration.voxel_rel = voxel;
-    const LevelSet field = MeshToLevelSet(surface_, voxel, sdf);
-    UpdatePoints(field);
-    iteration.contact_motion_voxels = UpdateContacts(field, iteration) / voxel;
-    const LevelSet stepped = VariationalStep(field, seed_field, SurfaceArea(surface_), OrientedPoints(), points_,
-                                             options_.level_set, &iteration.step);
-    surface_ = WithoutCrumbs(ExtractMesh(stepped));
+    if (field_.empty()) field_ = MeshToLevelSet(surface_, voxel, sdf);
+    UpdatePoints(field_);
+    iteration.contact_motion_voxels = UpdateContacts(field_, iteration) / voxel;
+    const LevelSet stepped = Step(seed_field, k == 0, iteration.step);
+    TakeSurface(stepped, sdf);
     iteration.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     summary_.iterations.push_back(iteration);
     progress_.Advance();

@@ -27,6 +27,8 @@ struct RefineOptions {
   double min_motion_voxels = 0.05;
   double min_point_sigma_rel = 0.0002;
   bool use_highlights = true;
+  bool use_lobes = true;
+  std::string bend = "auto";    // "seed", "flat", "auto": what the evidence is for
   std::string lights = "auto";  // "fixed", "solve", "auto": solve those with a standard deviation
   ContactOptions contacts;
   BundleOptions bundle;
@@ -54,6 +56,7 @@ struct IterationSummary {
 
 struct RefineSummary {
   std::vector<IterationSummary> iterations;
+  bool bends_like_seed = false;
   int num_highlights = 0;
   int num_contacts = 0;
   int num_points = 0;

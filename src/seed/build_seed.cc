@@ -11,6 +11,7 @@
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
 #include "seed/sparse_surface.h"
+#include "seed/subdivide.h"
 
 namespace glint {
 namespace {
@@ -20,6 +21,7 @@ constexpr int kRounds = 3;              // of surface, fairing, and leaving out 
 constexpr int kMaxStiffenings = 4;
 constexpr double kMendVoxels = 0.7;     // edges of the smooth seed: about as fine as it is
 constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
+constexpr int kSubdivisions = 2;         // of the smooth surface: its facets must not show at the finest voxels
 constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
 
 // Sum over the pieces; the mesh is closed and manifold.
@@ -183,7 +185,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     return out;
   }
   out.mesh = surface.mesh;
-  out.smooth = fair.mesh;
+  out.smooth = SubdivideSmoothly(fair.mesh, kSubdivisions);
   for (int point : surface.scene_point)
     if (point >= 0) out.point_used[point] = 1;
   out.fate = Fates(reliability, choice, out.point_used);

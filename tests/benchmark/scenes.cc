@@ -1,20 +1,26 @@
 // The main job measured: synthetic scenes and, where it is there, the path-traced vase. One row a scene: the sparse
 // surface (seed.ply), the same flow with the highlights switched off, and the result, against the truth. Column "< 2
 // %": mean normal error of those of the truth's vertices that have the surface within 2 % of the diagonal.
-//   scenes [--out DIR] [--scenes a,b] [--lights 1,2] [--views N] [--seed S] [--unknown] [--vase DIR] ...
+//   scenes [--out DIR] [--scenes a,b] [--lights 1,2] [--views N] [--seed S] [--unknown] [--vase DIR] [--set KEY=VALUE]
+//   ...
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <iostream>
+#include <string>
+#include <vector>
 
 #include "colmap/project.h"
 #include "colmap/scene.h"
 #include "core/error.h"
+#include "geometry/ray_caster.h"
 #include "io/mesh_io.h"
 #include "light/light_io.h"
 #include "metrics/compare.h"
 #include "metrics/swept_region.h"
+#include "pipeline/artifacts.h"
 #include "pipeline/comparison.h"
 #include "pipeline/run.h"
 #include "pipeline/terminal.h"
@@ -31,6 +37,15 @@ struct Measured {
 };
 
 constexpr double kNearRel = 0.02;
+
+// How every case is run.
+struct Plan {
+  fs::path out = "build/measured";
+  bool unknown = false;
+  bool without = true;  // also with the highlights switched off
+  std::string from;     // empty: the first stage that is not done yet
+  std::vector<std::string> settings;
+};
 
 Measured Measure(const TriangleMesh& mesh, const TriangleMesh& truth, const std::vector<uint8_t>& region,
                  const std::vector<uint8_t>& rest) {
@@ -56,6 +71,41 @@ void PrintRow(const std::string& scene, const std::string& surface, const Measur
   std::fflush(stdout);
 }
 
+Eigen::Vector3d InterpolatedNormal(const TriangleMesh& mesh, const RayHit& hit) {
+  const Eigen::Vector3i& f = mesh.faces[hit.face];
+  return ((1 - hit.u - hit.v) * mesh.normals[f[0]] + hit.u * mesh.normals[f[1]] + hit.v * mesh.normals[f[2]])
+      .normalized();
+}
+
+// The accepted highlights against the truth: how far the half vector is from the true normal where the ray meets the
+// true surface (what limits everything), the same of the result, and how far apart ray meets result and truth (% diag).
+void PrintContacts(const std::string& scene, const Scene& views, const fs::path& out, const TriangleMesh& truth) {
+  const std::vector<Light> lights = ReadLights(out / "lights.json");
+  TriangleMesh mesh = ReadMesh(out / "mesh.ply");
+  const RayCaster on_truth(truth), on_mesh(mesh);
+  const double diagonal = Diagonal(truth);
+  constexpr double kDegrees = 180 / M_PI;
+  std::vector<double> data, result, depth;
+  for (const Highlight& h : ReadHighlights(out / "stages" / "highlights.json", views.views.size())) {
+    if (h.status != HighlightStatus::kAccepted || h.light < 0 || h.light >= static_cast<int>(lights.size())) continue;
+    const View& view = views.views[h.view];
+    const auto ray = view.RayThrough(h.px);
+    if (!ray) continue;
+    const auto a = on_truth.Intersect(view.Center(), *ray), b = on_mesh.Intersect(view.Center(), *ray);
+    if (!a || !b) continue;
+    const Eigen::Vector3d half = HalfVector(lights[h.light], view.cam_from_world, a->position);
+    const Eigen::Vector3d true_normal = InterpolatedNormal(truth, *a);
+    data.push_back(kDegrees * std::acos(std::clamp(half.dot(true_normal), -1.0, 1.0)));
+    result.push_back(kDegrees * std::acos(std::clamp(InterpolatedNormal(mesh, *b).dot(true_normal), -1.0, 1.0)));
+    depth.push_back(100 * std::abs(a->t - b->t) / diagonal);
+  }
+  const ErrorStats d = StatsOf(data), r = StatsOf(result), z = StatsOf(depth);
+  fmt::print(
+      "{:<22} {:<12} {} highlights: half vector {:.3f} median {:.3f} 95 %, result there {:.3f}, {:.3f} deg; "
+      "depth {:.4f}, {:.4f} % diag\n",
+      scene, "contacts", d.count, d.median, d.p95, r.median, r.p95, z.median, z.p95);
+}
+
 double Seconds(const RunSummary& run) {
   double sum = 0;
   for (const StageTime& t : run.times) sum += t.seconds;
@@ -70,8 +120,8 @@ struct Case {
   Eigen::Affine3d truth_from_project = Eigen::Affine3d::Identity();
 };
 
-void MeasureCase(const Case& c) {
-  Config config;
+void MeasureCase(const Case& c, const Plan& plan) {
+  Config config = ResolveConfig({}, plan.settings);
   config.output.overlays = false;
   const auto run = [&](bool highlights, const fs::path& out) {
     config.refine.use_highlights = highlights;
@@ -80,6 +130,10 @@ void MeasureCase(const Case& c) {
     arguments.project = c.project;
     arguments.lights = c.lights;
     arguments.out = out;
+    if (!plan.from.empty()) {
+      const auto from = std::find(kRunStageNames.begin(), kRunStageNames.end(), plan.from);
+      arguments.stages.from = static_cast<RunStage>(from - kRunStageNames.begin());
+    }
     return Seconds(Run(arguments, config, quiet));
   };
   const auto measure = [&](const fs::path& file) {
@@ -89,12 +143,15 @@ void MeasureCase(const Case& c) {
     return Measure(mesh, c.truth, c.region, c.rest);
   };
   try {
-    const double without_s = run(false, c.out / "without");
+    const double without_s = plan.without ? run(false, c.out / "without") : 0;
     const double with_s = run(true, c.out / "with");
     PrintRow(c.name, "seed", measure(c.out / "with" / "seed.ply"), 0);
     PrintRow(c.name, "faired seed", measure(c.out / "with" / "stages" / "start.ply"), 0);
-    PrintRow(c.name, "without", measure(c.out / "without" / "mesh.ply"), without_s);
+    if (plan.without) PrintRow(c.name, "without", measure(c.out / "without" / "mesh.ply"), without_s);
     PrintRow(c.name, "glint", measure(c.out / "with" / "mesh.ply"), with_s);
+    TriangleMesh truth = c.truth;
+    Transform(c.truth_from_project.inverse(), truth);
+    PrintContacts(c.name, MakeScene(ReadModel(FindProject(c.project).model)), c.out / "with", truth);
   } catch (const Error& error) {
     fmt::print("{:<22} {}\n", c.name, error.what());
   }
@@ -105,23 +162,24 @@ std::vector<uint8_t> Complement(std::vector<uint8_t> mask) {
   return mask;
 }
 
-void MeasureSynthetic(const SyntheticOptions& options, const fs::path& out, bool unknown) {
+void MeasureSynthetic(const SyntheticOptions& options, const Plan& plan) {
   const std::string name = fmt::format("{} {}x{}{}", options.scene, options.lights, options.light_kind,
                                        options.seed == 1 ? "" : fmt::format(" s{}", options.seed));
-  const fs::path project = out / fmt::format("{}-{}-{}-{}-{}", options.scene, options.lights, options.light_kind,
-                                             options.views, options.seed);
+  const fs::path project = plan.out / fmt::format("{}-{}-{}-{}-{}", options.scene, options.lights, options.light_kind,
+                                                  options.views, options.seed);
   if (!fs::exists(project / "truth" / "mesh.ply")) WriteSyntheticProject(SynthesizeScene(options), project);
   const TriangleMesh truth = ReadMesh(project / "truth" / "mesh.ply");
   const Scene scene = MakeScene(ReadModel(FindProject(project).model));
   const std::vector<Light> lights = ReadLights(project / "truth" / "lights.json");
   std::vector<uint8_t> region = SweptRegion(truth, scene, lights);
   std::vector<uint8_t> rest = Complement(region);
-  MeasureCase({name, project, unknown ? fs::path() : project / "truth" / "lights.json", project / "glint", truth,
-               std::move(region), std::move(rest)});
+  MeasureCase({name, project, plan.unknown ? fs::path() : project / "truth" / "lights.json", project / "glint", truth,
+               std::move(region), std::move(rest)},
+              plan);
 }
 
 // Where highlights pass: nhl > 0; elsewhere: the rest of what at least one camera sees.
-void MeasureVase(const fs::path& vase, const fs::path& out, bool unknown) {
+void MeasureVase(const fs::path& vase, const Plan& plan) {
   const TriangleMesh truth = ReadMesh(vase / "truth" / "gt_mesh.ply");
   std::vector<uint8_t> region(truth.vertices.size()), rest(truth.vertices.size());
   for (const auto& [name, values] : truth.scalars)
@@ -135,18 +193,19 @@ void MeasureVase(const fs::path& vase, const fs::path& out, bool unknown) {
   Transform(similarity, colmap);
   EnsureNormals(colmap);
   PrintRow("vase", "COLMAP", Measure(colmap, truth, region, rest), 0);
-  MeasureCase({"vase", vase / "project", unknown ? fs::path() : vase / "lights.json", out / "vase", truth, region, rest,
-               similarity});
+  MeasureCase({"vase", vase / "project", plan.unknown ? fs::path() : vase / "lights.json", plan.out / "vase", truth,
+               region, rest, similarity},
+              plan);
 }
 
 int Main(int argc, char** argv) {
   CLI::App app("The main job measured on synthetic scenes and the vase");
-  fs::path out = "build/measured", vase;
+  fs::path vase;
+  Plan plan;
   std::vector<std::string> scenes = {"sphere", "blob", "torus", "hood"};
   std::vector<int> lights = {1, 2};
   SyntheticOptions options;
-  bool unknown = false;
-  app.add_option("--out", out, "folder for the scenes and results");
+  app.add_option("--out", plan.out, "folder for the scenes and results");
   app.add_option("--scenes", scenes, "scenes to measure; 'none' for none")->delimiter(',');
   app.add_option("--lights", lights, "numbers of lights")->delimiter(',');
   app.add_option("--kind", options.light_kind, "kind of the lights");
@@ -156,7 +215,11 @@ int Main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "random seed of the scenes");
   app.add_option("--roughness", options.roughness, "GGX alpha");
   app.add_option("--base", options.base, "base colour");
-  app.add_flag("--unknown", unknown, "do not give the lights");
+  app.add_flag("--unknown", plan.unknown, "do not give the lights");
+  app.add_flag("!--no-without", plan.without, "leave out the run without highlights");
+  app.add_option("--from", plan.from, "go on from this stage of an earlier call")
+      ->check(CLI::IsMember(std::vector<std::string>(kRunStageNames.begin(), kRunStageNames.end())));
+  app.add_option("--set", plan.settings, "change one option: section.option=value")->allow_extra_args(false);
   app.add_option("--vase", vase, "folder of the vase");
   CLI11_PARSE(app, argc, argv);
   PrintHeader();
@@ -165,9 +228,9 @@ int Main(int argc, char** argv) {
       if (scene == "none") continue;
       options.scene = scene;
       options.lights = count;
-      MeasureSynthetic(options, out, unknown);
+      MeasureSynthetic(options, plan);
     }
-  if (!vase.empty()) MeasureVase(vase, out, unknown);
+  if (!vase.empty()) MeasureVase(vase, plan);
   return 0;
 }
 

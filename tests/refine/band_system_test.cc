@@ -1,11 +1,14 @@
 #include "refine/band_system.h"
 
-#include <cmath>
-#include <functional>
-#include <random>
-
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "refine/band_transfer.h"
 #include "sdf/mesh_to_level_set.h"
 #include "tests/support/shapes.h"
 
@@ -94,14 +97,13 @@ TEST(BandSystem, SolvesToTheMinimum) {
     weights.pull[i] = 0.01f;
     weights.pull_target[i] = band.phi()[i];
   }
-  BandSystem system(band, weights);
   BandRows rows;
   for (int k = 0; k < 50; ++k) {
     rows.Push(static_cast<int32_t>(k * band.size() / 50), 1);
     rows.Push(static_cast<int32_t>(k * band.size() / 50 + 1), 0.5);
     rows.Close(0.1 * uniform(random), 2);
   }
-  system.SetRows(rows);
+  BandSystem system(band, weights, rows);
   std::vector<double> phi(band.phi().begin(), band.phi().end());
   const SolveReport report = system.Solve(2000, 1e-7, phi);
   EXPECT_LT(report.relative_residual, 1e-6);
@@ -119,10 +121,124 @@ TEST(BandSystem, WithPullAloneReturnsItsTarget) {
   weights.smoothness = 0;
   weights.pull.assign(band.size(), 3);
   for (size_t i = 0; i < band.size(); ++i) weights.pull_target[i] = static_cast<float>(0.1 * std::sin(7.0 * i));
-  const BandSystem system(band, weights);
+  BandSystem system(band, weights);
   std::vector<double> phi(band.size(), 0);
   system.Solve(10, 1e-12, phi);
   for (size_t i = 0; i < band.size(); ++i) EXPECT_NEAR(phi[i], weights.pull_target[i], 1e-7);
+}
+
+TEST(BandSystem, BendingIsMeasuredAgainstTheReference) {
+  const Band band(Sphere());
+  BandWeights weights = Weights(band);
+  weights.bend_change = 2;
+  const auto wave = Values(band, [](const Eigen::Vector3d& x) { return 0.1 * std::sin(5 * x[0]) * x[1]; });
+  weights.reference.assign(wave.begin(), wave.end());
+  EXPECT_NEAR(BandSystem(band, weights).Energy(wave), 0, 1e-6);
+  // Where it is not known, no bending is the target; nothing becomes NaN.
+  weights.reference[band.size() / 2] = std::numeric_limits<float>::quiet_NaN();
+  const double energy = BandSystem(band, weights).Energy(wave);
+  EXPECT_TRUE(std::isfinite(energy));
+  EXPECT_GT(energy, 1e-4);
+}
+
+TEST(BandSystem, AConstantBendHasNoChange) {
+  const Band band(Sphere());
+  BandWeights weights = Weights(band);
+  weights.smoothness = 0;
+  weights.bend_change = 1;
+  const BandSystem system(band, weights);
+  const auto quadratic = Values(band, [](const Eigen::Vector3d& x) { return x[0] * x[0] - 2 * x[1] * x[2] + x[0]; });
+  EXPECT_NEAR(system.Energy(quadratic), 0, 1e-6);
+  EXPECT_GT(system.Energy(Values(band, [](const Eigen::Vector3d& x) { return std::pow(x[0], 3); })), 1e-3);
+}
+
+// Weights as the level set has them, and normals at a few places.
+struct Problem {
+  BandWeights weights;
+  BandRows rows;
+};
+
+Problem LevelSetProblem(const Band& band) {
+  const double h = band.voxel_size(), area = 4 * M_PI / static_cast<double>(band.size());
+  Problem problem{Weights(band), {}};
+  problem.weights.smoothness = 30 * area / std::pow(h, 4);
+  problem.weights.bend_change = problem.weights.smoothness * std::pow(0.2 / h, 2);
+  problem.weights.normal = 10 * area / (h * h);
+  problem.weights.pull.assign(band.size(), static_cast<float>(1e4 * area));
+  problem.weights.pull_target = problem.weights.reference = band.phi();
+  for (int k = 0; k < 60; ++k) {
+    const Eigen::Vector3d x = Eigen::Vector3d(std::cos(7.0 * k), std::sin(3.0 * k), std::cos(2.0 * k)).normalized();
+    const Eigen::Vector3d t = x.unitOrthogonal();
+    const int32_t v = band.Find(band.ToIndexSpace(x).array().round().cast<int>());
+    for (int axis = 0; axis < 3; ++axis) {
+      problem.rows.Push(band.Neighbor(v, axis, 1), t[axis] / (2 * h));
+      problem.rows.Push(band.Neighbor(v, axis, 0), -t[axis] / (2 * h));
+    }
+    problem.rows.Close(0.02 * std::sin(5.0 * k), 1e4);
+  }
+  return problem;
+}
+
+TEST(BandOperator, IsSymmetricAndItsScaledEigenvaluesAreAtMostOne) {
+  const Band band(Sphere());
+  const Problem problem = LevelSetProblem(band);
+  const BandOperator matrix(band, problem.weights, problem.rows);
+  const auto a = Values(band, [](const Eigen::Vector3d& x) { return std::sin(9 * x[0] + x[1]); });
+  const auto b = Values(band, [](const Eigen::Vector3d& x) { return std::cos(7 * x[2]) * x[1]; });
+  std::vector<double> product_a, product_b;
+  matrix.Apply(a, product_a);
+  matrix.Apply(b, product_b);
+  const auto dot = [](const std::vector<double>& x, const std::vector<double>& y) {
+    return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
+  };
+  EXPECT_NEAR(dot(b, product_a), dot(a, product_b), 1e-4 * std::abs(dot(a, product_a)));
+  // Power iteration.
+  const std::vector<float> inverse = matrix.InverseAbsoluteRowSums();
+  std::vector<double> x = a;
+  double eigenvalue = 0;
+  for (int k = 0; k < 60; ++k) {
+    matrix.Apply(x, product_a);
+    for (size_t i = 0; i < x.size(); ++i) product_a[i] *= inverse[i];
+    eigenvalue = std::sqrt(dot(product_a, product_a) / dot(x, x));
+    x = product_a;
+    for (double& value : x) value /= eigenvalue;
+  }
+  EXPECT_LE(eigenvalue, 1.0001);
+  EXPECT_GT(eigenvalue, 0.3);
+}
+
+TEST(BandTransfer, ConstantsStayAndRestrictionIsTheTranspose) {
+  const Band band(Sphere());
+  const BandTransfer transfer(band);
+  const size_t coarse_size = transfer.coarse().size();
+  EXPECT_LT(coarse_size, band.size() / 2);
+  std::vector<float> fine(band.size(), 0);
+  transfer.AddProlonged(std::vector<float>(coarse_size, 1), fine);
+  for (float value : fine) EXPECT_NEAR(value, 1, 1e-6);
+  std::vector<float> coarse(coarse_size), restricted, prolonged(band.size(), 0);
+  for (size_t c = 0; c < coarse_size; ++c) coarse[c] = static_cast<float>(std::sin(1.0 * c));
+  for (size_t i = 0; i < fine.size(); ++i) fine[i] = static_cast<float>(std::cos(2.0 * i));
+  transfer.AddProlonged(coarse, prolonged);
+  transfer.Restrict(fine, restricted);
+  EXPECT_NEAR(std::inner_product(fine.begin(), fine.end(), prolonged.begin(), 0.0),
+              std::inner_product(coarse.begin(), coarse.end(), restricted.begin(), 0.0), 1e-3);
+}
+
+TEST(BandMultigrid, IterationsHardlyGrowAsVoxelsHalve) {
+  std::vector<int> iterations;
+  for (double voxel : {0.1, 0.05, 0.025}) {
+    const Band band(MeshToLevelSet(testing::Icosphere(4), voxel));
+    Problem problem = LevelSetProblem(band);
+    BandSystem system(band, problem.weights, problem.rows);
+    std::vector<double> phi(band.phi().begin(), band.phi().end());
+    const SolveReport report = system.Solve(500, 1e-4, phi);
+    EXPECT_LT(report.relative_residual, 1e-4);
+    iterations.push_back(report.iterations);
+  }
+  // Conjugate gradients without the coarser bands would need eight times as many each time (sixth order).
+  EXPECT_LT(iterations[1], 2 * iterations[0] + 3);
+  EXPECT_LT(iterations[2], 2 * iterations[1] + 3);
+  EXPECT_LT(iterations[2], 80);
 }
 
 }  // namespace

@@ -1,0 +1,156 @@
+#include "refine/band_multigrid.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <utility>
+
+#include "core/parallel.h"
+#include "refine/band_transfer.h"
+
+namespace glint {
+namespace {
+
+constexpr size_t kGrain = 1 << 13;
+constexpr size_t kDirectSize = 600;  // voxels, from which on a dense factorisation is quicker
+constexpr size_t kMaxLevels = 12;
+// The smoother takes down eigenvalues from here to 1. What the next coarser band cannot hold begins at 1/36 for the
+// squared Laplacian, whose waves across one axis are the slowest.
+constexpr float kSmallestSmoothed = 1.f / 30;
+constexpr int kDegree = 4;
+
+// The same terms for the coarse band: integrals over the surface, spread over fewer voxels of twice the size.
+BandWeights CoarseWeights(const BandWeights& fine, size_t num_fine, const BandTransfer& transfer) {
+  BandWeights coarse;
+  const double more = static_cast<double>(num_fine) / static_cast<double>(transfer.coarse().size());
+  coarse.smoothness = fine.smoothness * more / 16;
+  coarse.bend_change = fine.bend_change * more / 64;
+  coarse.normal = fine.normal * more / 4;
+  coarse.n = transfer.MeanNormals(fine.n);
+  transfer.Restrict(fine.pull, coarse.pull);
+  return coarse;
+}
+
+}  // namespace
+
+struct BandMultigrid::Level {
+  std::unique_ptr<BandTransfer> transfer;  // from the next finer level; none on the finest
+  BandWeights weights;                     // not used on the finest
+  std::unique_ptr<BandOperator> own;
+  const BandOperator* matrix = nullptr;
+  std::vector<float> inverse;               // of the absolute row sums
+  std::vector<float> x, b, residual, step;  // of the cycle
+  Eigen::LLT<Eigen::MatrixXf> direct;       // coarsest only
+
+  void Prepare() {
+    inverse = matrix->InverseAbsoluteRowSums();
+    const size_t n = matrix->topology().size();
+    x.resize(n), b.resize(n), residual.resize(n), step.resize(n);
+  }
+
+  // Chebyshev iteration for A x = b on [kSmallestSmoothed, 1]; from x = 0 if `fresh`.
+  void Smooth(bool fresh) {
+    constexpr float theta = (1 + kSmallestSmoothed) / 2, delta = (1 - kSmallestSmoothed) / 2, sigma = theta / delta;
+    const size_t n = x.size();
+    if (!fresh) matrix->Apply(x, residual);
+    ParallelFor(n, kGrain, [&](size_t i) {
+      residual[i] = fresh ? b[i] : b[i] - residual[i];
+      step[i] = inverse[i] * residual[i] / theta;
+      x[i] = fresh ? step[i] : x[i] + step[i];
+    });
+    std::vector<float>& product = scratch;
+    float rho = 1 / sigma;
+    for (int k = 1; k < kDegree; ++k) {
+      matrix->Apply(step, product);
+      const float next = 1 / (2 * sigma - rho), keep = next * rho, gain = 2 * next / delta;
+      ParallelFor(n, kGrain, [&](size_t i) {
+        residual[i] -= product[i];
+        step[i] = keep * step[i] + gain * inverse[i] * residual[i];
+        x[i] += step[i];
+      });
+      rho = next;
+    }
+  }
+
+  void TakeResidual() {
+    matrix->Apply(x, residual);
+    ParallelFor(x.size(), kGrain, [&](size_t i) { residual[i] = b[i] - residual[i]; });
+  }
+
+  std::vector<float> scratch;
+};
+
+BandMultigrid::BandMultigrid(const BandOperator& finest) {
+  levels_.push_back(std::make_unique<Level>());
+  levels_[0]->matrix = &finest;
+  levels_[0]->Prepare();
+  while (levels_.size() < kMaxLevels && levels_.back()->x.size() > kDirectSize) {
+    const Level& fine = *levels_.back();
+    auto coarse = std::make_unique<Level>();
+    coarse->transfer = std::make_unique<BandTransfer>(fine.matrix->topology());
+    if (coarse->transfer->coarse().size() > fine.x.size() * 3 / 4) break;  // as coarse as it gets
+    coarse->weights = CoarseWeights(fine.matrix->weights(), fine.x.size(), *coarse->transfer);
+    coarse->own = std::make_unique<BandOperator>(coarse->transfer->coarse(), coarse->weights,
+                                                 coarse->transfer->Restrict(fine.matrix->rows()));
+    coarse->matrix = coarse->own.get();
+    coarse->Prepare();
+    levels_.push_back(std::move(coarse));
+  }
+  FactorCoarsest();
+}
+
+BandMultigrid::~BandMultigrid() = default;
+
+void BandMultigrid::UpdateRowWeights() {
+  for (auto& level : levels_) {
+    if (level->own) level->own->SetRowWeights(levels_[0]->matrix->rows().weight);
+    level->inverse = level->matrix->InverseAbsoluteRowSums();
+  }
+  FactorCoarsest();
+}
+
+void BandMultigrid::FactorCoarsest() {
+  Level& level = *levels_.back();
+  const size_t n = level.x.size();
+  if (n > 2 * kDirectSize) return;
+  Eigen::MatrixXf matrix(n, n);
+  std::vector<float> unit(n, 0), column;
+  for (size_t i = 0; i < n; ++i) {
+    unit[i] = 1;
+    level.matrix->Apply(unit, column);
+    unit[i] = 0;
+    matrix.col(i) = Eigen::Map<const Eigen::VectorXf>(column.data(), n);
+  }
+  // A touch of the diagonal keeps what nothing holds from blowing up.
+  for (size_t i = 0; i < n; ++i) matrix(i, i) += level.inverse[i] > 0 ? 1e-5f / level.inverse[i] : 1;
+  level.direct.compute(matrix);
+}
+
+void BandMultigrid::Cycle(size_t level) {
+  Level& fine = *levels_[level];
+  const size_t n = fine.x.size();
+  if (level + 1 == levels_.size()) {
+    if (n <= 2 * kDirectSize && fine.direct.info() == Eigen::Success)
+      Eigen::Map<Eigen::VectorXf>(fine.x.data(), n) =
+          fine.direct.solve(Eigen::Map<const Eigen::VectorXf>(fine.b.data(), n));
+    else
+      fine.Smooth(true);
+    return;
+  }
+  Level& coarse = *levels_[level + 1];
+  fine.Smooth(true);
+  fine.TakeResidual();
+  coarse.transfer->Restrict(fine.residual, coarse.b);
+  Cycle(level + 1);
+  coarse.transfer->AddProlonged(coarse.x, fine.x);
+  fine.Smooth(false);
+}
+
+void BandMultigrid::Apply(const std::vector<double>& r, std::vector<double>& z) {
+  Level& finest = *levels_[0];
+  ParallelFor(r.size(), kGrain, [&](size_t i) { finest.b[i] = static_cast<float>(r[i]); });
+  Cycle(0);
+  z.resize(r.size());
+  ParallelFor(r.size(), kGrain, [&](size_t i) { z[i] = finest.x[i]; });
+}
+
+}  // namespace glint
