@@ -121,7 +121,8 @@ def signed_distance(V: Any, F: Any, points: Any, *, sign: str = "auto") -> np.nd
     Returns:
         (k,) float64, world units, negative inside. A mesh that is inside out is turned.
     """
-    return closest_points(V, F, points, sign=sign).distance
+    _check_sign(sign)
+    return _glint.signed_distance(_pair(V, F), _arrays.floats("points", points, (None, 3)), sign)
 
 
 def closest_points(V: Any, F: Any, points: Any, *, sign: str = "auto") -> SignedDistance:
@@ -134,7 +135,7 @@ def closest_points(V: Any, F: Any, points: Any, *, sign: str = "auto") -> Signed
         sign: "auto", "pseudonormal" or "winding".
     """
     _check_sign(sign)
-    return SignedDistance(**_glint.signed_distance(_pair(V, F), _arrays.floats("points", points, (None, 3)), sign))
+    return SignedDistance(**_glint.closest_points(_pair(V, F), _arrays.floats("points", points, (None, 3)), sign))
 
 
 def _check_sign(sign: str, *more: str) -> None:

@@ -1,6 +1,8 @@
 // Meshes, signed distance at points, and the comparison of meshes.
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "arrays.h"
 #include "background.h"
 #include "bindings.h"
@@ -62,7 +64,31 @@ std::vector<SignedDistanceQuery::Result> FindAll(const TriangleMesh& mesh, const
   return results;
 }
 
-py::dict SignedDistance(const py::dict& fields, const Array<double>& points, const std::string& sign) {
+// In blocks, between which Ctrl-C is heard.
+std::vector<double> DistancesOf(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& points,
+                                const std::string& sign, Progress& progress) {
+  constexpr size_t kBlock = 1 << 17;
+  const SignedDistanceQuery query(mesh, sign);
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  for (size_t begin = 0; begin < points.size(); begin += kBlock) {
+    progress.ThrowIfCancelled();
+    const auto first = points.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = points.begin() + static_cast<std::ptrdiff_t>(std::min(points.size(), begin + kBlock));
+    const std::vector<double> block = query.Distances({first, last});
+    distances.insert(distances.end(), block.begin(), block.end());
+  }
+  return distances;
+}
+
+Array<double> SignedDistance(const py::dict& fields, const Array<double>& points, const std::string& sign) {
+  const TriangleMesh mesh = MeshOf(fields);
+  const auto at = RowsOf<Eigen::Vector3d>(points);
+  return ArrayOfScalars(
+      InBackground(py::none(), [&](Progress& progress) { return DistancesOf(mesh, at, sign, progress); }));
+}
+
+py::dict ClosestPoints(const py::dict& fields, const Array<double>& points, const std::string& sign) {
   const TriangleMesh mesh = MeshOf(fields);
   const auto at = RowsOf<Eigen::Vector3d>(points);
   std::string method;
@@ -131,6 +157,7 @@ void BindMesh(py::module_& m) {
       },
       py::arg("path"), py::arg("mesh"));
   m.def("signed_distance", &SignedDistance, py::arg("mesh"), py::arg("points"), py::arg("sign"));
+  m.def("closest_points", &ClosestPoints, py::arg("mesh"), py::arg("points"), py::arg("sign"));
   m.def(
       "compare",
       [](const py::dict& mesh, const py::dict& reference, int num_samples, const std::vector<double>& f_thresholds_rel,

@@ -37,6 +37,7 @@ def test_closest_points_reproduce_the_distance():
     points = np.random.default_rng(3).uniform(-2, 2, (300, 3))
     found = glint.closest_points(CUBE_V, CUBE_F, points)
     np.testing.assert_allclose(np.linalg.norm(points - found.point, axis=1), np.abs(found.distance), atol=1e-12)
+    np.testing.assert_allclose(glint.signed_distance(CUBE_V, CUBE_F, points), found.distance, atol=1e-12)
     corners = CUBE_V[CUBE_F[found.face]]
     np.testing.assert_allclose(np.einsum("kc,kcd->kd", found.barycentric, corners), found.point, atol=1e-12)
     assert found.sign == "pseudonormal"
