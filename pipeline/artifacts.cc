@@ -56,17 +56,26 @@ Json ToJson(const Highlight& h) {
           {"status", StatusName(h.status)}};
 }
 
-Highlight FromJson(const Json& json, size_t num_views) {
+// A whole number in [min, end); the library's own conversion wraps what does not fit.
+int64_t Index(const Json& value, const char* kind, int64_t min, size_t end) {
+  if (!value.is_number_integer()) throw std::domain_error(fmt::format("{} is not a whole number", kind));
+  const bool is_huge = value.is_number_unsigned() && value.get<uint64_t>() >= end;
+  const int64_t index = is_huge ? 0 : value.get<int64_t>();
+  if (is_huge || index < min || (index >= 0 && static_cast<uint64_t>(index) >= end))
+    throw std::domain_error(fmt::format("{} {} of {}", kind, value.dump(), end));
+  return index;
+}
+
+Highlight FromJson(const Json& json, size_t num_views, size_t num_lights) {
   Highlight h;
-  h.view = json.at("view").get<uint32_t>();
-  if (h.view >= num_views) throw std::domain_error(fmt::format("view {} of {}", h.view, num_views));
+  h.view = static_cast<uint32_t>(Index(json.at("view"), "view", 0, num_views));
   h.px = {Number(json.at("px").at(0)), Number(json.at("px").at(1))};
   h.covariance_px = SymmetricFromJson(json.at("covariance_px"));
   h.moments_px = SymmetricFromJson(json.at("moments_px"));
   h.area_px = Number(json.at("area_px"));
   h.strength = Number(json.at("strength"));
   h.saturated_fraction = Number(json.at("saturated_fraction"));
-  h.light = json.at("light").get<int>();
+  h.light = static_cast<int>(Index(json.at("light"), "light", -1, num_lights));
   h.status = StatusFromName(json.at("status").get<std::string>());
   return h;
 }
@@ -82,14 +91,14 @@ void WriteHighlights(const std::filesystem::path& path, const std::vector<Highli
   });
 }
 
-std::vector<Highlight> ReadHighlights(const std::filesystem::path& path, size_t num_views) {
+std::vector<Highlight> ReadHighlights(const std::filesystem::path& path, size_t num_views, size_t num_lights) {
   std::vector<Highlight> highlights;
   std::string record = "the file";
   try {
     const Json root = Json::parse(ReadText(path));
     for (const Json& entry : root.at("highlights")) {
       record = fmt::format("highlight {}", highlights.size());
-      highlights.push_back(FromJson(entry, num_views));
+      highlights.push_back(FromJson(entry, num_views, num_lights));
     }
   } catch (const Json::exception& e) {
     throw InputError(path.string(), record, fmt::format("not as an earlier run wrote it: {}", e.what()));

@@ -121,7 +121,9 @@ void Flow::TakeSeed() {
 
 void Flow::Detect() { WriteHighlights(out_.Candidates(), DetectInAllViews(scene_, *images_, config_.detect, log_)); }
 
-void Flow::TakeHighlights(const fs::path& file) { highlights_ = ReadHighlights(file, scene_.views.size()); }
+void Flow::TakeHighlights(const fs::path& file) {
+  highlights_ = ReadHighlights(file, scene_.views.size(), lights_.size());
+}
 
 void Flow::FindLightsIfUnknown() {
   for (size_t k = 0; k < lights_.size(); ++k)
@@ -216,9 +218,9 @@ void Flow::TakeRefinedLights(const RefineResult& refined) {
 void Flow::TakeRefined() {
   TakeHighlights(out_.Refined());
   refined_.mesh = ReadMesh(out_.Mesh());
-  refined_.contacts = ReadContacts(out_.Contacts(), scene_);
   for (const FoundLight& found : ReadFoundLights(out_.Lights()))
     if (found.determined) refined_.lights.push_back(found.light);
+  refined_.contacts = ReadContacts(out_.Contacts(), scene_, highlights_.size(), refined_.lights.size());
   refined_.summary = summary_.refine;
 }
 

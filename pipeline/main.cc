@@ -51,6 +51,12 @@ void DeclareCommands(CLI::App& app, glint::CommandLine& line) {
   glint::AddConfigCommand(app, line);
 }
 
+// OpenCV says it in its own way.
+bool IsOutOfMemory(const std::exception& e) {
+  const auto* opencv = dynamic_cast<const cv::Exception*>(&e);
+  return dynamic_cast<const std::bad_alloc*>(&e) || (opencv && opencv->code == cv::Error::StsNoMem);
+}
+
 int RunAction(const glint::CommandLine& line) {
   glint::Terminal terminal(line.quiet ? glint::Verbosity::kQuiet : glint::Verbosity::kNormal);
   const glint::InterruptGuard interrupts;
@@ -69,13 +75,14 @@ int RunAction(const glint::CommandLine& line) {
   } catch (const glint::CancelledError&) {
     terminal.Error("stopped on request; finished stages are kept");
     return 128 + glint::InterruptSignal();
-  } catch (const std::bad_alloc&) {
-    terminal.Error("out of memory: choose larger voxels or smaller images");
-    return kBadInput;
   } catch (const std::filesystem::filesystem_error& e) {
     terminal.Error(e.what());
     return kBadInput;
   } catch (const std::exception& e) {
+    if (IsOutOfMemory(e)) {
+      terminal.Error("out of memory: choose larger voxels or smaller images");
+      return kBadInput;
+    }
     terminal.Error(std::string("this is a bug in Glint, please report it: ") + e.what());
     return kBug;
   }

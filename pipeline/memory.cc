@@ -1,14 +1,12 @@
 #include "pipeline/memory.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <string>
 
+#include "core/available_memory.h"
 #include "core/error.h"
 
 namespace glint {
@@ -22,40 +20,7 @@ constexpr double kBytesPerSolvedVoxel = 400;
 constexpr double kBytesPerSeedVoxel = 60;
 constexpr double kGiB = 1024.0 * 1024 * 1024;
 
-// First number in a file of /proc or /sys after `key`; kUnlimited if there is none.
-uint64_t NumberIn(const char* file, const std::string& key) {
-  std::ifstream in(file);
-  std::string word;
-  while (in >> word) {
-    if (!key.empty() && word != key) continue;
-    if (!key.empty() && !(in >> word)) break;
-    if (word.find_first_not_of("0123456789") != std::string::npos || word.size() > 18) return kUnlimited;
-    return std::stoull(word);
-  }
-  return kUnlimited;
-}
-
-uint64_t Difference(uint64_t limit, uint64_t used) {
-  if (limit == kUnlimited || used == kUnlimited) return kUnlimited;
-  return limit > used ? limit - used : 0;
-}
-
-uint64_t AddressSpaceLeft() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
-  const uint64_t kib = NumberIn("/proc/self/status", "VmSize:");
-  return Difference(limit.rlim_cur, kib == kUnlimited ? 0 : kib * 1024);
-}
-
 }  // namespace
-
-uint64_t AvailableMemory() {
-  const uint64_t kib = NumberIn("/proc/meminfo", "MemAvailable:");
-  const uint64_t machine = kib == kUnlimited ? kUnlimited : kib * 1024;
-  const uint64_t group =
-      Difference(NumberIn("/sys/fs/cgroup/memory.max", ""), NumberIn("/sys/fs/cgroup/memory.current", ""));
-  return std::min({machine, group, AddressSpaceLeft()});
-}
 
 uint64_t EstimateRefineMemory(const TriangleMesh& seed, const RefineOptions& options) {
   const double voxel = options.voxel_rel * Diagonal(seed);

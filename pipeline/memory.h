@@ -1,4 +1,4 @@
-// How much memory there is, and how much a run would need.
+// How much memory a run would need.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,6 @@
 #include "refine/refine.h"
 
 namespace glint {
-
-// Bytes that this process may still take: the least of what the machine has free, its control group's limit
-// and its own address-space limit.
-uint64_t AvailableMemory();
 
 // Bytes that Refine() needs at its finest level, from the seed's area and the width of the band.
 uint64_t EstimateRefineMemory(const TriangleMesh& seed, const RefineOptions& options);

@@ -11,6 +11,8 @@
 namespace glint {
 namespace {
 
+constexpr size_t kMaxPathLength = 200;  // no option's path is as long, and the work grows with the length
+
 // Levenshtein distance.
 size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
@@ -131,6 +133,7 @@ const OptionItem* OptionTable::FindSection(std::string_view path) const {
 }
 
 std::string OptionTable::Nearest(std::string_view path) const {
+  path = path.substr(0, kMaxPathLength);
   const OptionItem* best = nullptr;
   size_t best_cost = std::numeric_limits<size_t>::max();
   for (const OptionItem& item : items_) {

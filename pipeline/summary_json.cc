@@ -58,11 +58,14 @@ void HideNonFinite(Json& json) {
     json = {{"float", fmt::format("{}", json.get<double>())}};
 }
 
-void ShowNonFinite(Json& json) {
+// What Glint writes is nested a few levels deep; what is deeper would run out of stack.
+void ShowNonFinite(Json& json, int depth = 0) {
+  constexpr int kMaxDepth = 32;
+  if (depth > kMaxDepth) throw Json::other_error::create(599, "nested too deep", nullptr);
   if (json.is_object() && json.size() == 1 && json.contains("float") && json["float"].is_string())
     json = std::strtod(json["float"].get<std::string>().c_str(), nullptr);
   else if (json.is_structured())
-    for (Json& child : json) ShowNonFinite(child);
+    for (Json& child : json) ShowNonFinite(child, depth + 1);
 }
 
 std::string Dump(Json json) {
@@ -129,13 +132,18 @@ void WriteContacts(const std::filesystem::path& path, const std::vector<Contact>
   });
 }
 
-std::vector<Contact> ReadContacts(const std::filesystem::path& path, const Scene& scene) {
+std::vector<Contact> ReadContacts(const std::filesystem::path& path, const Scene& scene, size_t num_highlights,
+                                  size_t num_lights) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path.string(), "", "missing; an earlier run leaves it");
   const std::string text(std::istreambuf_iterator<char>(in), {});
   try {
     auto contacts = Parse(text).get<std::vector<Contact>>();
-    for (Contact& contact : contacts) contact.cam_from_world = scene.views.at(contact.view).cam_from_world;
+    for (Contact& contact : contacts) {
+      contact.cam_from_world = scene.views.at(contact.view).cam_from_world;
+      if (contact.highlight >= num_highlights || contact.light < 0 || static_cast<size_t>(contact.light) >= num_lights)
+        throw InputError(path.string(), "", "names a highlight or a light that is not there");
+    }
     return contacts;
   } catch (const Json::exception& e) {
     throw InputError(path.string(), "", fmt::format("not as an earlier run wrote it: {}", e.what()));

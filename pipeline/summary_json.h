@@ -19,6 +19,7 @@ bool TakeSummaryPart(RunStage stage, const std::string& text, RunSummary& summar
 // Contacts but for their cam_from_world, which is the view's. Reading throws InputError naming the file when it is
 // missing or malformed or names a view that `scene` does not have.
 void WriteContacts(const std::filesystem::path& path, const std::vector<Contact>& contacts);
-std::vector<Contact> ReadContacts(const std::filesystem::path& path, const Scene& scene);
+std::vector<Contact> ReadContacts(const std::filesystem::path& path, const Scene& scene, size_t num_highlights,
+                                  size_t num_lights);
 
 }  // namespace glint

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/inside.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -31,6 +32,13 @@ void RemoveTemporaries(const fs::path& folder) {
   }
 }
 
+// An output folder may come from elsewhere, for example with a project that was downloaded.
+void RefuseLinksOutOf(const fs::path& root, const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders)
+    if (!LiesInside(folder, root))
+      throw InputError(folder.string(), "", "is a link that leads out of the output folder; remove it");
+}
+
 }  // namespace
 
 Workspace::Workspace(fs::path root) : root_(std::move(root)) {
@@ -39,6 +47,7 @@ Workspace::Workspace(fs::path root) : root_(std::move(root)) {
     throw InputError(root_.string(), "", "expected a folder for the output, found a file");
   fs::create_directories(root_, error);
   if (error) throw InputError(root_.string(), "", "the output folder cannot be made: " + error.message());
+  RefuseLinksOutOf(root_, {Stages(), Overlays()});
   folder_ = ::open(root_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder_ < 0 || ::access(root_.c_str(), W_OK | X_OK) != 0) {
     const int reason = errno;
@@ -50,6 +59,8 @@ Workspace::Workspace(fs::path root) : root_(std::move(root)) {
     ::close(folder_);
     throw InputError(root_.string(), "", "another run of glint is writing here; wait for it or choose another -o");
   }
+  // The log is appended to, not replaced as a whole: never at the end of a link.
+  if (fs::is_symlink(Log(), error)) fs::remove(Log(), error);
   // Only where a run writes: the user may have named a folder that holds other things too.
   RemoveTemporaries<fs::directory_iterator>(root_);
   RemoveTemporaries<fs::directory_iterator>(Stages());
@@ -110,6 +121,8 @@ fs::path PathForImage(const fs::path& folder, const std::string& image_name, std
   if (!inside) throw InputError(image_name, "", "an image name must be a relative path that stays in its folder");
   fs::path path = folder / relative;
   path += std::string(suffix);
+  if (!LiesInside(path.parent_path(), folder))
+    throw InputError(path.string(), "", "a link in its folder leads out of it; expected it to stay inside");
   return path;
 }
 

@@ -76,7 +76,7 @@ class Publication {
 };
 
 // Where an image called `image_name` in the model goes below `folder`: `folder/image_name + suffix`. Names that would
-// leave the folder (absolute, or with "..") are refused with InputError.
+// leave the folder (absolute, with "..", through a link) are refused with InputError.
 std::filesystem::path PathForImage(const std::filesystem::path& folder, const std::string& image_name,
                                    std::string_view suffix);
 

@@ -8,6 +8,8 @@
 
 #include "colmap/project.h"
 #include "colmap/scene.h"
+#include "core/error.h"
+#include "core/inside.h"
 #include "io/project_images.h"
 #include "pipeline/commands/command.h"
 #include "pipeline/config.h"
@@ -24,6 +26,9 @@ struct Arguments {
 };
 
 void Detect(const Arguments& arguments, Terminal& terminal) {
+  const std::filesystem::path overlays = std::filesystem::path(arguments.out) / "overlays";
+  if (!LiesInside(overlays, arguments.out))
+    throw InputError(overlays.string(), "", "is a link that leads out of the output folder; remove it");
   const Config config = ResolveConfig(arguments.config, arguments.settings);
   const ProjectPaths paths = FindProject(arguments.project, arguments.images, arguments.masks);
   const Model model = ReadModel(paths.model);
@@ -33,8 +38,7 @@ void Detect(const Arguments& arguments, Terminal& terminal) {
   const std::vector<Highlight> highlights = DetectInAllViews(scene, images, config.detect, terminal);
   WriteHighlightMasks(scene, highlights, arguments.out, terminal);
   if (arguments.overlays)
-    WriteOverlays(scene, images, highlights, config.output.overlay_max_side_px,
-                  std::filesystem::path(arguments.out) / "overlays", terminal);
+    WriteOverlays(scene, images, highlights, config.output.overlay_max_side_px, overlays, terminal);
   terminal.Finish();
   size_t accepted = 0;
   for (const Highlight& h : highlights) accepted += h.status == HighlightStatus::kAccepted;

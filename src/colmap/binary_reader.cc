@@ -16,7 +16,7 @@ constexpr size_t kBufferSize = size_t{1} << 20;
 }  // namespace
 
 BinaryReader::BinaryReader(const std::filesystem::path& file) : path_(file) {
-  file_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  file_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe must not wait for its writer
   if (file_ < 0) throw InputError(file.string(), "", fmt::format("cannot be opened: {}", std::strerror(errno)));
   struct stat status = {};
   if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {

@@ -154,10 +154,13 @@ std::optional<std::string> CameraProblem(const Camera& camera) {
     return fmt::format("expected {} parameters ({}) for {}, found {}", info->num_params, info->param_names, info->name,
                        params.size());
   }
-  constexpr uint64_t kMaxSize = 1'000'000;
+  constexpr uint64_t kMaxSize = 1'000'000, kMaxPixels = uint64_t{1} << 30;  // OpenCV reads no more
   if (camera.width < 1 || camera.height < 1 || camera.width > kMaxSize || camera.height > kMaxSize) {
     return fmt::format("expected a width and height of 1 to {} px, found {} x {}", kMaxSize, camera.width,
                        camera.height);
+  }
+  if (camera.width * camera.height > kMaxPixels) {
+    return fmt::format("expected at most {} pixels, found {} x {}", kMaxPixels, camera.width, camera.height);
   }
   for (size_t i = 0; i < params.size(); ++i) {
     if (!std::isfinite(params[i])) {

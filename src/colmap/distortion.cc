@@ -189,7 +189,7 @@ std::optional<Eigen::Vector2d> Distort(const Lens& lens, const Eigen::Vector2d& 
 }
 
 std::optional<Eigen::Vector2d> Undistort(const Lens& lens, const Eigen::Vector2d& distorted) {
-  if (const auto x = Newton(lens, distorted, distorted)) return x;
+  if (auto x = Newton(lens, distorted, distorted)) return x;
   // Far from the axis Newton may leave the range: invert the radial part alone by bisection and start there.
   const double target = distorted.norm();
   double limit = std::max(target, 1e-3);

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path Require(const fs::path& folder, const char* name, bool is_binary) {
-  const fs::path file = folder / fmt::format("{}.{}", name, is_binary ? "bin" : "txt");
+  fs::path file = folder / fmt::format("{}.{}", name, is_binary ? "bin" : "txt");
   if (!fs::exists(file)) throw InputError(file.string(), "", "expected this file of the COLMAP model, found none");
   return file;
 }

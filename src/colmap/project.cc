@@ -164,12 +164,14 @@ ProjectPaths FindProject(const fs::path& project, const fs::path& images_overrid
   const auto names = Sample(ImageNames(paths.model), 50);
   const auto parents = ParentsToSearch(paths.root, paths.model);
   paths.images = images_override;
+  paths.images_given = !images_override.empty();
   if (paths.images.empty()) {
     const std::vector<const char*> usual_names = {"images", "input", "imgs", "image", "photos", "rgb", ""};
     paths.images = ChooseFolder(parents, usual_names, names, "").folder;
     if (paths.images.empty()) paths.notes.push_back("no folder with the model's images was found");
   }
   paths.masks = masks_override;
+  paths.masks_given = !masks_override.empty();
   if (paths.masks.empty()) {
     auto mask_parents = parents;
     if (!paths.images.empty()) {

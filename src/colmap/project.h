@@ -12,6 +12,8 @@ struct ProjectPaths {
   std::filesystem::path model;     // folder with cameras.*, images.*, points3D.*
   std::filesystem::path images;    // folder that image names are relative to; empty: none found
   std::filesystem::path masks;     // folder with <image name>.png (COLMAP: 0 is masked out); empty: none found
+  bool images_given = false;       // by the user: links in it may lead anywhere
+  bool masks_given = false;
   std::vector<std::string> notes;  // choices made, for example which of several sub-models was taken
 };
 

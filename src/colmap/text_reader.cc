@@ -22,6 +22,9 @@ std::string_view Trimmed(std::string_view text) {
 }  // namespace
 
 TextReader::TextReader(const std::filesystem::path& file) : path_(file), buffer_(size_t{1} << 18) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    throw InputError(file.string(), "", "expected a file");  // a pipe would wait for its writer
   in_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
   errno = 0;
   in_.open(file, std::ios::binary);

@@ -1,8 +1,9 @@
 #include "geometry/ray_caster.h"
 
-#include <cmath>
-
 #include <embree3/rtcore.h>
+
+#include <cmath>
+#include <new>
 
 #include "core/check.h"
 
@@ -22,6 +23,7 @@ struct RayCaster::Impl {
 RayCaster::RayCaster(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
   Impl& self = *impl_;
   self.device = rtcNewDevice(nullptr);
+  if (self.device == nullptr && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   GLINT_CHECK(self.device != nullptr);
   self.scene = rtcNewScene(self.device);
   rtcSetSceneFlags(self.scene, RTC_SCENE_FLAG_ROBUST);
@@ -34,6 +36,10 @@ RayCaster::RayCaster(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>())
                                                                  3 * sizeof(float), mesh.vertices.size()));
     auto* faces = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                  3 * sizeof(unsigned), mesh.faces.size()));
+    if (vertices == nullptr || faces == nullptr) {
+      rtcReleaseGeometry(geometry);
+      throw std::bad_alloc();
+    }
     for (size_t v = 0; v < mesh.vertices.size(); ++v) {
       const Eigen::Vector3f x = ((mesh.vertices[v] - self.center) * self.scale).cast<float>();
       for (int k = 0; k < 3; ++k) vertices[3 * v + k] = x[k];
@@ -45,6 +51,9 @@ RayCaster::RayCaster(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>())
     rtcReleaseGeometry(geometry);
   }
   rtcCommitScene(self.scene);
+  const RTCError error = rtcGetDeviceError(self.device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  GLINT_CHECK_EQ(static_cast<int>(error), static_cast<int>(RTC_ERROR_NONE));
 }
 
 RayCaster::~RayCaster() = default;

@@ -60,7 +60,7 @@ Explanation Explain(const View& view, const SeedSurface& surface, const std::vec
       second_deg = std::min(second_deg, error_deg);
     }
   }
-  best.ambiguous = second_deg - best.error_deg < kAmbiguousDeg;
+  best.ambiguous = best.light >= 0 && second_deg - best.error_deg < kAmbiguousDeg;
   return best;
 }
 

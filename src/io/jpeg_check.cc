@@ -44,6 +44,17 @@ void OnMessage(j_common_ptr info, int level) {
   }
 }
 
+// A progressive file may say each pixel again and again, at the cost of a whole image for a few bytes.
+void OnProgress(j_common_ptr info) {
+  constexpr int kMaxScans = 200;  // encoders write about 10
+  auto* decoder = reinterpret_cast<j_decompress_ptr>(info);
+  if (decoder->input_scan_number <= kMaxScans) return;
+  auto* manager = reinterpret_cast<ErrorManager*>(info->err);
+  manager->is_damaged = true;
+  std::snprintf(manager->message, sizeof(manager->message), "it has more than %d scans", kMaxScans);
+  std::longjmp(manager->escape, 1);
+}
+
 // Nothing here has a destructor: longjmp leaves it.
 void DecodeCoefficients(const unsigned char* bytes, size_t size, ErrorManager* manager) {
   jpeg_decompress_struct decoder;
@@ -51,6 +62,9 @@ void DecodeCoefficients(const unsigned char* bytes, size_t size, ErrorManager* m
   manager->base.error_exit = OnError;
   manager->base.emit_message = OnMessage;
   jpeg_create_decompress(&decoder);
+  jpeg_progress_mgr progress = {};
+  progress.progress_monitor = OnProgress;
+  decoder.progress = &progress;
   if (setjmp(manager->escape) == 0) {
     jpeg_mem_src(&decoder, bytes, size);
     jpeg_read_header(&decoder, TRUE);

@@ -14,7 +14,7 @@ TriangleMesh ParseOff(std::string_view bytes, const std::filesystem::path& path)
   const std::string_view magic = in.NextWord();
   if (!magic.ends_with("OFF")) in.Fail(fmt::format("expected 'OFF', found '{}'", magic.substr(0, 40)));
   const std::string_view kind = magic.substr(0, magic.size() - 3);
-  if (kind != "" && kind != "C" && kind != "N" && kind != "CN" && kind != "ST" && kind != "STC") {
+  if (!kind.empty() && kind != "C" && kind != "N" && kind != "CN" && kind != "ST" && kind != "STC") {
     in.Fail(fmt::format("expected OFF, COFF or NOFF, found '{}'", magic.substr(0, 40)));
   }
   const bool has_normals = kind.ends_with("N"), has_colors = kind.find('C') != std::string_view::npos;
@@ -41,8 +41,8 @@ TriangleMesh ParseOff(std::string_view bytes, const std::filesystem::path& path)
       for (uint8_t& value : mesh.colors.emplace_back()) {
         const std::string_view word = in.NextWordInLine();
         const double scale = word.find('.') == std::string_view::npos ? 1 : 255;
-        value =
-            static_cast<uint8_t>(std::clamp(std::round(scale * in.ParseNumber<double>(word, "a colour")), 0.0, 255.0));
+        const double color = std::round(scale * in.ParseNumber<double>(word, "a colour"));
+        value = static_cast<uint8_t>(std::isnan(color) ? 0 : std::clamp(color, 0.0, 255.0));
       }
     }
     in.SkipLine();

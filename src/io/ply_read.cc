@@ -192,6 +192,7 @@ void ReadVertices(const PlyElement& element, PlyBody& body, const std::filesyste
 
 // Triangles from lists of vertex indices; they are checked and triangulated once all vertices are known.
 void ReadFaces(const PlyElement& element, PlyBody& body, std::vector<int>& lengths, std::vector<int>& indices) {
+  if (element.properties.empty()) return;  // takes no room in the file, whatever the count
   for (uint64_t i = 0; i < element.count; ++i) {
     body.BeginRecord("face", i);
     for (const PlyProperty& property : element.properties) {

@@ -9,6 +9,8 @@
 namespace glint::internal {
 namespace {
 
+constexpr size_t kMaxTestsPerVertex = 4000;
+
 // Newell's normal: twice the area vector of the polygon.
 Eigen::Vector3d AreaVector(const std::vector<Eigen::Vector3d>& vertices, const std::vector<int>& polygon) {
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
@@ -62,9 +64,12 @@ void AppendPolygon(const std::vector<Eigen::Vector3d>& vertices, const std::vect
   } else if (rest.size() > 4) {
     const Eigen::Vector3d normal = AreaVector(vertices, rest);
     bool found = true;
+    // A file may hold polygons as large as itself: what costs too much becomes a fan.
+    size_t num_tests_left = kMaxTestsPerVertex * rest.size();
     while (rest.size() > 3 && found) {
       found = false;
-      for (size_t i = 0; i < rest.size() && !found; ++i) {
+      for (size_t i = 0; i < rest.size() && !found && num_tests_left >= rest.size(); ++i) {
+        num_tests_left -= rest.size();
         if (!IsEar(vertices, rest, i, normal)) continue;
         const size_t n = rest.size();
         faces.emplace_back(rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]);

@@ -1,6 +1,7 @@
 // The images of a project, from files or from memory.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -13,12 +14,14 @@
 
 namespace glint {
 
-// Reads files with OpenCV: 8 and 16 bit, grey, CMYK and alpha become BGR; the orientation in EXIF is ignored, as
-// COLMAP ignores it, so that pixels are where COLMAP's features are. Masks in COLMAP's naming: <masks>/<name>.png.
+// Reads JPEG, PNG, TIFF, WebP, BMP and PNM with OpenCV: 8 and 16 bit, grey, CMYK and alpha become BGR; the orientation
+// in EXIF is ignored, as COLMAP ignores it, so that pixels are where COLMAP's features are. Masks in COLMAP's naming:
+// <masks>/<name>.png.
 class ProjectImages : public ImageSource {
  public:
   // Looks which images are there; the missing are counted in one warning to `progress`. Throws InputError if there is
-  // no image folder or more than half of the views' images are missing.
+  // no image folder, more than half of the views' images are missing, or one is a link out of the project and its folder
+  // was not named by the user.
   ProjectImages(const Scene& scene, const ProjectPaths& paths, Progress& progress = Progress::Silent());
 
   size_t size() const override { return views_.size(); }
@@ -35,7 +38,7 @@ class ProjectImages : public ImageSource {
  private:
   struct Entry {
     std::string name;
-    int width, height;
+    uint64_t width, height;
     bool has_image, has_mask;
   };
   std::filesystem::path images_, masks_;
@@ -47,7 +50,8 @@ class ProjectImages : public ImageSource {
 // Images held in memory, for tests and rendered scenes. An empty Mat is a missing image or mask.
 class MemoryImages : public ImageSource {
  public:
-  explicit MemoryImages(std::vector<cv::Mat> images, std::vector<cv::Mat> masks = {});
+  explicit MemoryImages(std::vector<cv::Mat> images);
+  MemoryImages(std::vector<cv::Mat> images, std::vector<cv::Mat> masks);
   ~MemoryImages() override;
   size_t size() const override;
   bool Load(size_t view, cv::Mat& image) const override;

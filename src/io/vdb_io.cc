@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <openvdb/io/File.h>
-#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
 
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/check.h"
 #include "core/error.h"
+#include "io/vdb_head.h"
 #include "sdf/level_set_impl.h"
 
 namespace glint {
@@ -46,37 +46,6 @@ void ReplaceUuid(const fs::path& file) {
   if (!stream) throw InputError(file.string(), "", "cannot be written");
 }
 
-// OpenVDB reads past the end of a cut file without noticing: compares the file's size with what its directory of
-// grids says.
-void CheckNotCut(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const auto size = static_cast<int64_t>(fs::file_size(path));
-  int64_t magic = 0;
-  uint32_t format = 0, library_major = 0, library_minor = 0;
-  char has_offsets = 0;
-  const auto read = [&](auto& value) { in.read(reinterpret_cast<char*>(&value), sizeof(value)); };
-  read(magic), read(format), read(library_major), read(library_minor), read(has_offsets);
-  if (!in || magic != openvdb::OPENVDB_MAGIC) throw InputError(path.string(), "", "expected an OpenVDB file");
-  // Older files lay out their head differently, and files of a stream hold no offsets: nothing to compare with.
-  if (format < openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION || !has_offsets) return;
-  in.ignore(kUuidLength);
-  openvdb::io::setVersion(in, openvdb::VersionId(library_major, library_minor), format);
-  openvdb::MetaMap file_metadata;
-  file_metadata.readMeta(in);
-  int32_t num_grids = 0;
-  read(num_grids);
-  for (int32_t i = 0; i < num_grids && in; ++i) {
-    openvdb::io::GridDescriptor descriptor;
-    descriptor.read(in);
-    if (descriptor.getEndPos() > size || descriptor.getEndPos() < in.tellg()) {
-      throw InputError(path.string(), fmt::format("grid '{}'", descriptor.gridName()),
-                       fmt::format("expected {} bytes, found {}: the file is cut", descriptor.getEndPos(), size));
-    }
-    descriptor.seekToEnd(in);
-  }
-  if (!in) throw InputError(path.string(), "", fmt::format("the file is cut at {} bytes", size));
-}
-
 std::string Describe(const openvdb::GridBase& grid) {
   return fmt::format("'{}' ({} grid of {})", grid.getName(), openvdb::GridBase::gridClassToString(grid.getGridClass()),
                      grid.valueType());
@@ -99,7 +68,7 @@ std::string ChooseGrid(openvdb::io::File& file, const fs::path& path, std::vecto
         fmt::format("expected a grid of floats of the class level set, found {}", found.empty() ? "none" : found));
   }
   const bool has_usual = std::find(level_sets.begin(), level_sets.end(), kVdbGridName) != level_sets.end();
-  const std::string chosen = has_usual ? kVdbGridName : level_sets.front();
+  std::string chosen = has_usual ? kVdbGridName : level_sets.front();
   if (level_sets.size() > 1 && notes) {
     notes->push_back(fmt::format("{}: holds {}; took '{}'", path.string(), found, chosen));
   }
@@ -128,7 +97,7 @@ LevelSet CheckedLevelSet(openvdb::FloatGrid::Ptr grid, const fs::path& path) {
 
 // Reads the whole grid now; cut and damaged files must not be found out later.
 LevelSet ReadNow(const fs::path& path, std::vector<std::string>* notes) {
-  CheckNotCut(path);
+  internal::CheckVdbHead(path);
   openvdb::io::File file(path.string());
   file.setCopyMaxBytes(0);
   file.open(/*delayLoad=*/false);
@@ -159,7 +128,7 @@ void WriteVdb(const fs::path& path, const LevelSet& level_set) {
     ReplaceUuid(temporary);
     // OpenVDB does not say whether all bytes found room on the disk.
     try {
-      CheckNotCut(temporary);
+      internal::CheckVdbHead(temporary);
     } catch (const InputError&) {
       throw InputError(path.string(), "", "cannot be written whole: is the disk full?");
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -19,6 +20,14 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+
+// What was found, for messages: a value as it is, what may be nested without end by its kind.
+std::string Shown(const json& value) {
+  if (value.is_object()) return "an object";
+  if (!value.is_array()) return value.dump();
+  const bool is_flat = std::none_of(value.begin(), value.end(), [](const json& part) { return part.is_structured(); });
+  return is_flat && value.size() <= 16 ? value.dump() : fmt::format("a list of {}", value.size());
+}
 
 // One entry of the list, and how errors name it.
 struct Record {
@@ -37,20 +46,20 @@ struct Record {
   std::string RequireOneOf(const char* key, std::string_view a, std::string_view b) const {
     const json& v = Require(key);
     if (!v.is_string() || (v != a && v != b))
-      Fail(fmt::format("\"{}\" must be \"{}\" or \"{}\", found {}", key, a, b, v.dump()));
+      Fail(fmt::format("\"{}\" must be \"{}\" or \"{}\", found {}", key, a, b, Shown(v)));
     return v.get<std::string>();
   }
 
   Eigen::Vector3d RequireVector(const char* key) const {
     const json& v = Require(key);
     if (!v.is_array() || v.size() != 3)
-      Fail(fmt::format("\"{}\" must be a list of 3 numbers, found {}", key, v.dump()));
+      Fail(fmt::format("\"{}\" must be a list of 3 numbers, found {}", key, Shown(v)));
     Eigen::Vector3d vector;
     for (int i = 0; i < 3; ++i) {
-      if (!v[i].is_number()) Fail(fmt::format("\"{}\" must be a list of 3 numbers, found {}", key, v.dump()));
+      if (!v[i].is_number()) Fail(fmt::format("\"{}\" must be a list of 3 numbers, found {}", key, Shown(v)));
       vector[i] = v[i].get<double>();
     }
-    if (!vector.allFinite()) Fail(fmt::format("\"{}\" must be finite, found {}", key, v.dump()));
+    if (!vector.allFinite()) Fail(fmt::format("\"{}\" must be finite, found {}", key, Shown(v)));
     return vector;
   }
 
@@ -58,7 +67,7 @@ struct Record {
     const auto it = value.find(key);
     if (it == value.end()) return 0;
     if (!it->is_number() || !std::isfinite(it->get<double>()) || it->get<double>() < 0)
-      Fail(fmt::format("\"{}\" must be a number, zero or positive, found {}", key, it->dump()));
+      Fail(fmt::format("\"{}\" must be a number, zero or positive, found {}", key, Shown(*it)));
     return it->get<double>();
   }
 
@@ -71,14 +80,14 @@ struct Record {
       sound = (*it)[i].is_number() && std::isfinite((*it)[i].get<double>());
       if (sound) c[i] = (*it)[i].get<double>();
     }
-    if (!sound) Fail(fmt::format("\"covariance\" must be a list of 6 numbers, found {}", it->dump()));
+    if (!sound) Fail(fmt::format("\"covariance\" must be a list of 6 numbers, found {}", Shown(*it)));
     return (Eigen::Matrix3d() << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]).finished();
   }
 
   std::string OptionalText(const char* key) const {
     const auto it = value.find(key);
     if (it == value.end()) return "";
-    if (!it->is_string()) Fail(fmt::format("\"{}\" must be a text, found {}", key, it->dump()));
+    if (!it->is_string()) Fail(fmt::format("\"{}\" must be a text, found {}", key, Shown(*it)));
     return it->get<std::string>();
   }
 
@@ -92,7 +101,7 @@ struct Record {
 };
 
 Light ParseLight(const Record& record) {
-  if (!record.value.is_object()) record.Fail("expected an object, found " + record.value.dump());
+  if (!record.value.is_object()) record.Fail("expected an object, found " + Shown(record.value));
   Light light;
   light.type = record.RequireOneOf("type", "distant", "point") == "distant" ? LightType::kDistant : LightType::kPoint;
   light.frame = record.RequireOneOf("frame", "world", "camera") == "world" ? LightFrame::kWorld : LightFrame::kCamera;

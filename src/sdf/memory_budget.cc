@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
 #include <numbers>
 
+#include "core/available_memory.h"
 #include "core/error.h"
 #include "core/parallel.h"
 
@@ -22,14 +21,7 @@ constexpr double kBytesPerTriangle = 100;
 constexpr double kBytesPerTriangleByWinding = 400;
 constexpr double kDenseBytesPerTriangle = 400;
 
-double FreeBytes() {
-  std::ifstream in("/proc/meminfo");
-  for (std::string key; in >> key;) {
-    double kilobytes;
-    if (key == "MemAvailable:" && in >> kilobytes) return 1024 * kilobytes;
-  }
-  return std::numeric_limits<double>::infinity();
-}
+double FreeBytes() { return static_cast<double>(AvailableMemory()); }
 
 // Volume in voxels of all leaves that a band may touch: a surface crosses those within a slab of about their size, and
 // a triangle without width those within a tube.

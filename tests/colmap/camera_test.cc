@@ -148,6 +148,8 @@ TEST_P(EveryCamera, RefusesWhatCannotBeUsed) {
   camera = sound;
   camera.width = 0;
   EXPECT_THAT(CameraProblem(camera).value_or(""), HasSubstr("width"));
+  camera.width = camera.height = 40000;  // more than OpenCV reads
+  EXPECT_THAT(CameraProblem(camera).value_or(""), HasSubstr("pixels"));
 }
 
 TEST(Camera, PerspectiveModelsSeeNothingBehindThem) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <functional>
@@ -403,6 +404,17 @@ TEST(ModelBinary, MissingFilesAreNamed) {
     }
   }
   EXPECT_THROW(ReadModel("/no/such/folder"), InputError);
+}
+
+TEST(Model, APipeInPlaceOfAFileIsRefusedAtOnce) {
+  for (const ModelFormat format : {ModelFormat::kBinary, ModelFormat::kText}) {
+    const TemporaryFolder folder;
+    WriteModel(SmallModel(2, 3), folder.path(), format);
+    const fs::path file = folder / (format == ModelFormat::kBinary ? "images.bin" : "images.txt");
+    fs::remove(file);
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    EXPECT_THROW(ReadModel(folder.path()), InputError);
+  }
 }
 
 }  // namespace

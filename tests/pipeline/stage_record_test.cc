@@ -112,17 +112,21 @@ TEST_F(ContactsFile, ReadsBackExactlyWithThePosesOfTheViews) {
   contact.axis_rays.fill(Eigen::Vector3d::UnitY());
   contact.reason = HighlightStatus::kGrazing;
   WriteContacts(folder_ / "contacts.json", {contact, contact});
-  const std::vector<Contact> read = ReadContacts(folder_ / "contacts.json", scene);
+  const std::vector<Contact> read = ReadContacts(folder_ / "contacts.json", scene, 10, 10);
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[1].direction, contact.direction);
   EXPECT_TRUE(std::isnan(read[1].depth));
   EXPECT_EQ(read[1].reason, HighlightStatus::kGrazing);
   EXPECT_EQ(read[1].cam_from_world.translation, scene.views[2].cam_from_world.translation);
+  EXPECT_THROW(ReadContacts(folder_ / "contacts.json", scene, 4, 10), InputError);
+  EXPECT_THROW(ReadContacts(folder_ / "contacts.json", scene, 10, 0), InputError);
   scene.views.resize(2);
-  EXPECT_THROW(ReadContacts(folder_ / "contacts.json", scene), InputError);
+  EXPECT_THROW(ReadContacts(folder_ / "contacts.json", scene, 10, 10), InputError);
+  Write("contacts.json", std::string(100000, '[') + std::string(100000, ']'));
+  EXPECT_THROW(ReadContacts(folder_ / "contacts.json", scene, 10, 10), InputError);
   Write("contacts.json", "[{}]");
-  EXPECT_THROW(ReadContacts(folder_ / "contacts.json", scene), InputError);
-  EXPECT_THROW(ReadContacts(folder_ / "none.json", scene), InputError);
+  EXPECT_THROW(ReadContacts(folder_ / "contacts.json", scene, 10, 10), InputError);
+  EXPECT_THROW(ReadContacts(folder_ / "none.json", scene, 10, 10), InputError);
 }
 
 }  // namespace
