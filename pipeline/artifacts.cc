@@ -52,6 +52,7 @@ Json ToJson(const Highlight& h) {
           {"area_px", h.area_px},
           {"strength", h.strength},
           {"saturated_fraction", h.saturated_fraction},
+          {"flatness", h.flatness},
           {"light", h.light},
           {"status", StatusName(h.status)}};
 }
@@ -75,6 +76,7 @@ Highlight FromJson(const Json& json, size_t num_views, size_t num_lights) {
   h.area_px = Number(json.at("area_px"));
   h.strength = Number(json.at("strength"));
   h.saturated_fraction = Number(json.at("saturated_fraction"));
+  h.flatness = Number(json.at("flatness"));
   h.light = static_cast<int>(Index(json.at("light"), "light", -1, num_lights));
   h.status = StatusFromName(json.at("status").get<std::string>());
   return h;

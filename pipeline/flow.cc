@@ -135,9 +135,11 @@ void Flow::FindLightsIfUnknown() {
   if (lights_.empty()) {
     WriteFoundLights(out_.StageLights(), found);
     log_.Info(summary_.find_lights.BriefReport());
+    if (!summary_.find_lights.mirror_like.empty()) GiveUp(summary_.find_lights.mirror_like);
     return;
   }
   WriteLights(out_.StageLights(), lights_);
+  if (!summary_.find_lights.mirror_like.empty()) log_.Warn(summary_.find_lights.mirror_like);
   for (const std::string& sentence : Contradictions(lights_, found, scene_.views, BoundingBox(seed_).center()))
     log_.Warn(sentence);
 }

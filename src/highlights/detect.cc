@@ -9,6 +9,7 @@
 #include "core/check.h"
 #include "highlights/brightness.h"
 #include "highlights/lobe_fit.h"
+#include "highlights/lobe_profile.h"
 #include "highlights/scale_space.h"
 #include "highlights/tint.h"
 
@@ -62,6 +63,7 @@ Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, c
   h.covariance_px = covariance * scale * scale + 0.03 * 0.03 * h.moments_px +
                     options.position_floor_px * options.position_floor_px * Eigen::Matrix2d::Identity();
   h.saturated_fraction = fit.saturated_fraction;
+  h.flatness = Flatness(map, blob, options.saturation);
   // Of a saturated blob only a thin rim is left to judge by.
   if (fit.ok && fit.saturated_fraction < 0.05 && fit.profile_error > options.max_profile_error)
     h.status = HighlightStatus::kNotALobe;

@@ -1,6 +1,7 @@
 #include "highlights/find_lights.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,11 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "highlights/check_lights.h"
+#include "highlights/expected_views.h"
+#include "highlights/exposure.h"
+#include "highlights/lamp_size.h"
+#include "highlights/light_groups.h"
+#include "highlights/mirror_test.h"
 #include "highlights/paint_test.h"
 #include "highlights/seed_surface.h"
 #include "highlights/view_brightness.h"
@@ -19,13 +25,14 @@ namespace {
 constexpr double kMaxViewAngleDeg = 65;  // silhouettes catch the background
 constexpr int kPasses = 2;
 constexpr double kMinConditioning = 0.01;
-constexpr double kMirrorsDeg = 6;     // of a place's normal: it would show the light
+// Of a mirror: bright spots a view that move, and the share of them that lights explain.
+constexpr double kMirrorSpots = 8, kMirrorExplained = 0.25;
 constexpr double kOneSpotRel = 0.01;  // spread of highlights that share one place's error, diagonals
-constexpr double kClearRel = 0.01;    // how far the seed may be off where it hides things from each other, diagonals
 
 struct Moving {
   size_t candidate;
-  bool may_move;  // no paint either if a light moved with the camera and so shaded paint anew in every view
+  double view_cos;  // between the seed's normal and the direction to the camera
+  bool may_move;    // no paint either if a light moved with the camera and so shaded paint anew in every view
 };
 
 // What goes dark at its place in the other views. `moving_lights`: to try for lights that move with the camera.
@@ -33,6 +40,7 @@ std::vector<Moving> NotPaint(const Scene& scene, const ViewBrightness& brightnes
                              const GateOptions& gate, const std::vector<Highlight>& candidates,
                              const std::vector<Light>& moving_lights, Progress& progress) {
   std::vector<std::array<bool, 2>> passed(candidates.size(), {false, false});
+  std::vector<double> view_cos(candidates.size(), 1);
   progress.Begin("Highlights that move", candidates.size());
   ParallelFor(candidates.size(), 16, [&](size_t i) {
     progress.ThrowIfCancelled();
@@ -45,6 +53,7 @@ std::vector<Moving> NotPaint(const Scene& scene, const ViewBrightness& brightnes
     if (samples.empty() || samples.front().off_center > 0 ||
         -ray->dot(samples.front().normal) < std::cos(kMaxViewAngleDeg * M_PI / 180))
       return;
+    view_cos[i] = -ray->dot(samples.front().normal);
     const auto moves = [&](const Light* light) {
       const auto kept = KeptBrightness(scene, brightness, surface, light, h, samples.front(),
                                        {gate.min_half_change_deg, gate.min_other_views});
@@ -56,19 +65,24 @@ std::vector<Moving> NotPaint(const Scene& scene, const ViewBrightness& brightnes
   });
   std::vector<Moving> moving;
   for (size_t i = 0; i < passed.size(); ++i)
-    if (passed[i][0]) moving.push_back({i, passed[i][1]});
+    if (passed[i][0]) moving.push_back({i, view_cos[i], passed[i][1]});
   return moving;
 }
 
 // The strongest, and none that is much fainter than they; in the order of the candidates.
-std::vector<Moving> Strongest(const std::vector<Highlight>& candidates, std::vector<Moving> moving,
-                              double min_relative_strength, int max_candidates) {
-  const auto strength = [&](const Moving& m) { return candidates[m.candidate].strength; };
+std::vector<Moving> Strongest(const std::vector<Highlight>& candidates, const ViewBrightness& brightness,
+                              std::vector<Moving> moving, double min_relative_strength, int max_candidates) {
+  const auto strength = [&](const Moving& m) {
+    const Highlight& h = candidates[m.candidate];
+    return h.strength / brightness.Exposure(h.view) / PeakGain(m.view_cos);
+  };
   std::stable_sort(moving.begin(), moving.end(),
                    [&](const Moving& a, const Moving& b) { return strength(a) > strength(b); });
   if (moving.empty()) return moving;
   const double least = min_relative_strength * strength(moving[moving.size() / 10]);
-  while (strength(moving.back()) < least) moving.pop_back();
+  // A saturated one is brighter than its strength says.
+  std::erase_if(
+      moving, [&](const Moving& m) { return candidates[m.candidate].saturated_fraction <= 0 && strength(m) < least; });
   moving.resize(std::min(moving.size(), static_cast<size_t>(max_candidates)));
   std::sort(moving.begin(), moving.end(), [](const Moving& a, const Moving& b) { return a.candidate < b.candidate; });
   return moving;
@@ -110,28 +124,28 @@ double Spread(const std::vector<LightObservation>& observations, const std::vect
   return std::sqrt(squares / count);
 }
 
-// Views in which the seed has a place that would mirror the light to the camera and sees both.
-int ViewsThatShouldShow(const Scene& scene, const SeedSurface& surface, const TriangleMesh& seed,
-                        const std::vector<Eigen::Vector3d>& normals, const Light& light, double max_incidence_deg) {
-  constexpr size_t kMaxPlaces = 3000;
-  const double min_cos = std::cos(max_incidence_deg * M_PI / 180), near_cos = std::cos(kMirrorsDeg * M_PI / 180);
-  const size_t stride = seed.vertices.size() / kMaxPlaces + 1;
-  std::vector<char> shows(scene.views.size(), 0);
-  ParallelFor(scene.views.size(), 1, [&](size_t v) {
-    const View& view = scene.views[v];
-    const Eigen::Vector3d center = view.Center();
-    for (size_t i = 0; i < seed.vertices.size() && !shows[v]; i += stride) {
-      const Eigen::Vector3d& x = seed.vertices[i];
-      const Eigen::Vector3d half = HalfVector(light, view.cam_from_world, x);
-      if (half.dot(normals[i]) < near_cos || half.dot((center - x).normalized()) < min_cos) continue;
-      const auto px = view.Project(x);
-      SurfaceSample at{x, normals[i]};
-      at.error_world = kClearRel * surface.diagonal();
-      const Eigen::Vector3d lamp = x + 2 * surface.diagonal() * DirectionToLight(light, view.cam_from_world, x);
-      shows[v] = px && view.Contains(*px) && !surface.Occluded(at, center) && !surface.Occluded(at, lamp);
-    }
-  });
-  return static_cast<int>(std::count(shows.begin(), shows.end(), 1));
+std::vector<char> ViewsThatShow(size_t num_views, const std::vector<Highlight>& of_light) {
+  std::vector<char> shows(num_views, 0);
+  for (const Highlight& h : of_light) shows[h.view] = 1;
+  return shows;
+}
+
+// A light that does not shine in all groups says where it does; only there it is expected.
+void LimitToGroups(const Scene& scene, const LightGroups& groups, size_t k, Light& light, std::vector<char>& expected) {
+  if (groups.count == 1) return;
+  for (size_t v = 0; v < scene.views.size(); ++v) {
+    if (groups.shines[groups.group_of_view[v]][k])
+      light.images.push_back(scene.views[v].name);
+    else
+      expected[v] = 0;
+  }
+  if (light.images.size() == scene.views.size()) light.images.clear();
+}
+
+std::vector<std::string> Names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const View& view : scene.views) names.push_back(view.name);
+  return names;
 }
 
 // Why a light is not to be used; empty: it is determined.
@@ -151,43 +165,19 @@ std::string WhyNot(const FoundLight& f, int expected_views, double diagonal, con
   return "";
 }
 
-}  // namespace
-
-void FindLightsOptions::Visit(OptionVisitor& v) {
-  v.Field({.name = "max_lights", .help = "Most lights to look for", .unit = "lights", .min = 1, .max = 20}, max_lights);
-  v.Field({.name = "min_support",
-           .help = "Fewest highlights that make a light",
-           .unit = "highlights",
-           .min = 3,
-           .max = 1000},
-          min_support);
-  v.Field({.name = "min_completeness",
-           .help = "Least highlights of a light, as a share of the views that should show one",
-           .unit = "ratio",
-           .min = 0,
-           .max = 1},
-          min_completeness);
-  v.Field(
-      {.name = "max_normal_sigma_deg",
-       .help = "A light that the seed's normals agree with no better is not used: print agrees with any light a little",
-       .unit = "deg",
-       .min = 0.1,
-       .max = 90},
-      max_normal_sigma_deg);
-  v.Field({.name = "max_sigma_deg",
-           .help = "A light that is less certain is not used",
-           .unit = "deg",
-           .min = 0.1,
-           .max = 90},
-          max_sigma_deg);
-  v.Field({.name = "kinds", .help = "Kinds of lights to look for", .choices = {"any", "distant", "point"}}, kinds);
-  v.Field({.name = "max_candidates",
-           .help = "Only so many of the strongest candidates vote",
-           .unit = "highlights",
-           .min = 10,
-           .max = 100000},
-          max_candidates);
+std::string MirrorLike(size_t num_views, size_t num_moving, size_t num_votes, const std::vector<FoundLight>& lights) {
+  double explained = 0;
+  for (const FoundLight& f : lights)
+    if (f.determined) explained += f.support / static_cast<double>(std::max<size_t>(num_votes, 1));
+  const double spots = static_cast<double>(num_moving) / static_cast<double>(std::max<size_t>(num_views, 1));
+  if (spots < kMirrorSpots || explained > kMirrorExplained) return "";
+  return fmt::format(
+      "the object mirrors its surroundings like chrome: {:.0f} bright spots a photograph move over it, and lights "
+      "explain {:.0f} % of them",
+      spots, 100 * explained);
 }
+
+}  // namespace
 
 std::string FindLightsSummary::BriefReport() const {
   const auto used = std::count_if(lights.begin(), lights.end(), [](const FoundLight& f) { return f.determined; });
@@ -199,8 +189,12 @@ std::string FindLightsSummary::BriefReport() const {
         "; {} in the {}'s frame ({:.3f}, {:.3f}, {:.3f}), {:.0f} highlights, sigma {:.2g}{}, normals within {:.1f} deg",
         distant ? "distant" : "point", f.light.frame == LightFrame::kWorld ? "world" : "camera", f.light.vector.x(),
         f.light.vector.y(), f.light.vector.z(), f.support, f.light.sigma, distant ? " deg" : "", f.normal_sigma_deg);
+    if (f.angular_size_deg > 0) report += fmt::format(", {:.0f} deg across", f.angular_size_deg);
     if (!f.determined) report += " is not determined and not used: " + f.why;
   }
+  if (groups.size() > 1)
+    report += fmt::format("; the light changes between groups of photographs: {}", fmt::join(groups, " | "));
+  if (!mirror_like.empty()) report += "; " + mirror_like;
   if (used > 0) report += fmt::format("; {:.0f} % explained by no light", 100 * outlier_share);
   return report;
 }
@@ -212,7 +206,8 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
   GLINT_CHECK_EQ(images.size(), scene.views.size());
   GLINT_CHECK(!seed.empty());
   const double diagonal = Diagonal(seed);
-  const ViewBrightness brightness(images, size_t(gate.image_memory_mb) << 20, progress);
+  ViewBrightness brightness(images, size_t(gate.image_memory_mb) << 20, progress);
+  brightness.Equalise(RelativeExposures(scene, brightness));
   const SeedSurface surface(seed, scene.points, gate.seed_error_rel * diagonal);
   FindLightsSummary told;
   for (const Highlight& h : candidates) told.candidates += h.status == HighlightStatus::kAccepted;
@@ -221,10 +216,11 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
   std::vector<Light> moving_lights = {{LightType::kPoint, LightFrame::kCamera, Eigen::Vector3d::Zero(), 0}};
   LightFit fit;
   std::vector<LightObservation> observations;
+  std::vector<Moving> moving;
   for (int pass = 0; pass < kPasses; ++pass) {
-    std::vector<Moving> moving = NotPaint(scene, brightness, surface, gate, candidates, moving_lights, progress);
+    moving = NotPaint(scene, brightness, surface, gate, candidates, moving_lights, progress);
     told.not_paint = moving.size();
-    moving = Strongest(candidates, std::move(moving), gate.min_relative_strength, options.max_candidates);
+    moving = Strongest(candidates, brightness, std::move(moving), gate.min_relative_strength, options.max_candidates);
     observations = Observe(scene, surface, candidates, moving);
     fit = FitLights(observations, BoundingBox(seed).center(), diagonal, FitOptions(gate, options));
     moving_lights.resize(1);
@@ -233,9 +229,23 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
     if (moving_lights.size() == 1) break;
   }
   const std::vector<Eigen::Vector3d> normals = SmoothNormals(seed);
+  const auto of_light = [&](size_t k) {
+    std::vector<Highlight> highlights;
+    for (size_t i = 0; i < moving.size(); ++i)
+      if (fit.assignment[i] == static_cast<int>(k)) highlights.push_back(candidates[moving[i].candidate]);
+    return highlights;
+  };
+  std::vector<LightShows> shows;
+  for (size_t k = 0; k < fit.lights.size(); ++k)
+    shows.push_back({ViewsThatShouldShow(scene, surface, seed, normals, fit.lights[k].light, gate.max_incidence_deg),
+                     ViewsThatShow(scene.views.size(), of_light(k))});
+  const LightGroups groups = GroupViewsByLight(shows, OrderByNumbers(Names(scene)));
+  told.groups = DescribeGroups(groups, Names(scene));
   for (size_t k = 0; k < fit.lights.size(); ++k) {
     FoundLight f = fit.lights[k];
-    const int expected = ViewsThatShouldShow(scene, surface, seed, normals, f.light, gate.max_incidence_deg);
+    LimitToGroups(scene, groups, k, f.light, shows[k].expected);
+    MeasureSize(scene, surface, of_light(k), BoundingBox(seed).center(), f);
+    const auto expected = static_cast<int>(std::count(shows[k].expected.begin(), shows[k].expected.end(), 1));
     if (InsideObject(f.light, seed))
       f.why = "it would lie inside the object";
     else if (Spread(observations, fit.assignment, static_cast<int>(k)) < kOneSpotRel * diagonal)
@@ -247,6 +257,7 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
   }
   std::stable_partition(told.lights.begin(), told.lights.end(), [](const FoundLight& f) { return f.determined; });
   told.outlier_share = fit.outlier_share;
+  told.mirror_like = MirrorLike(scene.views.size(), told.not_paint, observations.size(), told.lights);
   if (summary) *summary = told;
   return told.lights;
 }

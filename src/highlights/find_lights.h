@@ -32,15 +32,21 @@ struct FindLightsSummary {
   size_t not_paint = 0;         // of these, what goes dark in the other views
   double normal_sigma_deg = 0;  // of the seed's normals against the half vectors
   double outlier_share = 0;     // of the candidates, explained by no light
+  // Not empty: the object mirrors its surroundings rather than a few lights, and a sentence that says so. Lights found
+  // all the same are not to be trusted.
+  std::string mirror_like;
 
   std::vector<FoundLight> lights;  // as returned
+  // Photographs under different lights: the first and last of each run; one entry if the light does not change.
+  std::vector<std::string> groups;
 
   std::string BriefReport() const;
 };
 
 // Candidates that survive the paint test (gate.h) vote with the seed's normals: l = 2 (n·v) n − v; see FitLights().
 // Lights that are not determined (too few highlights, too uncertain) come last, marked, and say why. An empty result is
-// an honest one. The lights' sigma tells the bundle how far they may still be off.
+// an honest one. Where the light changes between groups of photographs, each light says in which it shines. The lights'
+// sigma tells the bundle how far they may still be off.
 std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images, const TriangleMesh& seed,
                                    const GateOptions& gate, const FindLightsOptions& options,
                                    const std::vector<Highlight>& candidates, FindLightsSummary* summary = nullptr,

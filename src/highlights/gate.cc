@@ -10,6 +10,8 @@
 #include "core/check.h"
 #include "core/median.h"
 #include "core/parallel.h"
+#include "highlights/exposure.h"
+#include "highlights/mirror_test.h"
 #include "highlights/paint_test.h"
 #include "highlights/seed_surface.h"
 #include "highlights/view_brightness.h"
@@ -37,6 +39,7 @@ Explanation Explain(const View& view, const SeedSurface& surface, const std::vec
   Explanation best;
   double second_deg = std::numeric_limits<double>::infinity();
   for (size_t l = 0; l < lights.size(); ++l) {
+    if (!ShinesIn(lights[l], view.name)) continue;
     double error_deg = std::numeric_limits<double>::infinity();
     const SurfaceSample* at = nullptr;
     for (const SurfaceSample& s : samples) {
@@ -115,12 +118,18 @@ Verdict Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSu
 }
 
 // See GateHighlights(): what is much fainter than a light's strong highlights.
-void RejectFaint(const std::vector<Highlight>& highlights, const std::vector<size_t>& judged, size_t num_lights,
-                 double min_relative_strength, std::vector<Verdict>& verdicts) {
+void RejectFaint(const std::vector<Highlight>& highlights, const ViewBrightness& brightness,
+                 const std::vector<size_t>& judged, size_t num_lights, double min_relative_strength,
+                 std::vector<Verdict>& verdicts) {
+  const auto strength = [&](size_t k) {
+    const Highlight& h = highlights[judged[k]];
+    return h.strength / brightness.Exposure(h.view) /
+           PeakGain(std::cos(verdicts[k].explanation.incidence_deg * M_PI / 180));
+  };
   std::vector<std::vector<double>> strengths(num_lights);
   for (size_t k = 0; k < judged.size(); ++k)
     if (verdicts[k].status == HighlightStatus::kAccepted)
-      strengths[verdicts[k].explanation.light].push_back(highlights[judged[k]].strength);
+      strengths[verdicts[k].explanation.light].push_back(strength(k));
   std::vector<double> least(num_lights, 0);
   for (size_t l = 0; l < num_lights; ++l) {
     if (strengths[l].empty()) continue;
@@ -128,10 +137,23 @@ void RejectFaint(const std::vector<Highlight>& highlights, const std::vector<siz
     std::nth_element(strengths[l].begin(), strengths[l].begin() + strong, strengths[l].end());
     least[l] = min_relative_strength * strengths[l][strong];
   }
-  for (size_t k = 0; k < judged.size(); ++k)
-    if (verdicts[k].status == HighlightStatus::kAccepted &&
-        highlights[judged[k]].strength < least[verdicts[k].explanation.light])
+  for (size_t k = 0; k < judged.size(); ++k) {
+    const bool saturated = highlights[judged[k]].saturated_fraction > 0;  // brighter than its strength says
+    if (verdicts[k].status == HighlightStatus::kAccepted && !saturated &&
+        strength(k) < least[verdicts[k].explanation.light])
       verdicts[k].status = HighlightStatus::kWeak;
+  }
+}
+
+// What is seen of a broad lobe peaks beside the point that mirrors the light.
+void MoveToMirrorPoint(const View& view, const SeedSurface& surface, const Light& light, const SurfaceSample& at,
+                       Highlight& highlight) {
+  constexpr double kUnsure = 0.3;  // of the shift: the surface's curvature is the seed's
+  // What is cut off at white looks broader than its lobe is.
+  if (highlight.saturated_fraction > 0) return;
+  const Eigen::Vector2d shift = MirrorTest(view, surface, light, highlight, at).PeakShift();
+  highlight.px -= shift;
+  highlight.covariance_px += kUnsure * kUnsure * shift * shift.transpose();
 }
 
 GateSummary Summarise(const std::vector<Highlight>& highlights, const std::vector<Verdict>& verdicts,
@@ -157,54 +179,6 @@ GateSummary Summarise(const std::vector<Highlight>& highlights, const std::vecto
 
 }  // namespace
 
-void GateOptions::Visit(OptionVisitor& v) {
-  v.Field({.name = "seed_error_rel",
-           .help = "How far the seed may lie off the surface",
-           .unit = "fraction of the diagonal",
-           .min = 0.0001,
-           .max = 0.5},
-          seed_error_rel);
-  v.Field({.name = "max_normal_error_deg",
-           .help = "Largest angle between half vector and the seed's normals nearby",
-           .unit = "deg",
-           .min = 0,
-           .max = 180},
-          max_normal_error_deg);
-  v.Field(
-      {.name = "max_incidence_deg", .help = "Largest incidence angle of the light", .unit = "deg", .min = 0, .max = 89},
-      max_incidence_deg);
-  v.Field({.name = "min_half_change_deg",
-           .help = "Views whose half vector differs by less are not compared with to tell paint",
-           .unit = "deg",
-           .min = 0,
-           .max = 90},
-          min_half_change_deg);
-  v.Field({.name = "paint_ratio",
-           .help = "Paint keeps at least this fraction of its brightness over the body in the other views",
-           .unit = "ratio",
-           .min = 0,
-           .max = 2},
-          paint_ratio);
-  v.Field({.name = "min_other_views",
-           .help = "Fewest other views that can tell paint",
-           .unit = "views",
-           .min = 1,
-           .max = 1000},
-          min_other_views);
-  v.Field({.name = "min_relative_strength",
-           .help = "Least strength, relative to the strong highlights of its light",
-           .unit = "ratio",
-           .min = 0,
-           .max = 1},
-          min_relative_strength);
-  v.Field({.name = "image_memory_mb",
-           .help = "Memory for small copies of all views",
-           .unit = "MB",
-           .min = 16,
-           .max = 65536},
-          image_memory_mb);
-}
-
 std::string GateSummary::BriefReport() const {
   std::string report = fmt::format("{} of {} highlight candidates accepted", accepted, candidates);
   for (int s = 1; s < kNumHighlightStatuses; ++s)
@@ -220,7 +194,8 @@ void GateHighlights(const Scene& scene, const ImageSource& images, const Triangl
                     GateSummary* summary, Progress& progress) {
   GLINT_CHECK_EQ(images.size(), scene.views.size());
   GLINT_CHECK(!seed.empty());
-  const ViewBrightness brightness(images, size_t(options.image_memory_mb) << 20, progress);
+  ViewBrightness brightness(images, size_t(options.image_memory_mb) << 20, progress);
+  brightness.Equalise(RelativeExposures(scene, brightness));
   const SeedSurface surface(seed, scene.points, options.seed_error_rel * Diagonal(seed));
 
   std::vector<size_t> judged;
@@ -235,11 +210,13 @@ void GateHighlights(const Scene& scene, const ImageSource& images, const Triangl
     verdicts[k] = Judge(scene, brightness, surface, lights, options, highlights[judged[k]]);
     progress.Advance();
   });
-  RejectFaint(highlights, judged, lights.size(), options.min_relative_strength, verdicts);
+  RejectFaint(highlights, brightness, judged, lights.size(), options.min_relative_strength, verdicts);
   for (size_t k = 0; k < judged.size(); ++k) {
     Highlight& h = highlights[judged[k]];
     h.status = verdicts[k].status;
     h.light = verdicts[k].explanation.light;
+    if (h.status == HighlightStatus::kAccepted)
+      MoveToMirrorPoint(scene.views[h.view], surface, lights[h.light], verdicts[k].explanation.at, h);
   }
   if (summary) *summary = Summarise(highlights, verdicts, judged, lights.size());
 }

@@ -46,8 +46,9 @@ struct GateSummary {
 // Paint: for every depth along the ray within the seed's error, the brightness of the surface point in the other
 // unoccluded views in which that light would be mirrored elsewhere; if at any depth the median stays bright, it is
 // paint. What is much fainter than the strong highlights of the same light is texture that slipped through: one lamp
-// on one object varies by Fresnel's factor, not by orders of magnitude. `images` is streamed once into small grey
-// copies (image_memory_mb in all).
+// on one object varies by Fresnel's factor, not by orders of magnitude. Accepted peaks are moved to the point that
+// mirrors the light, beside which broad lobes peak on a surface that is seen aslant. `images` is streamed once into
+// small grey copies (image_memory_mb in all).
 void GateHighlights(const Scene& scene, const ImageSource& images, const TriangleMesh& seed,
                     const std::vector<Light>& lights, const GateOptions& options, std::vector<Highlight>& highlights,
                     GateSummary* summary = nullptr, Progress& progress = Progress::Silent());

@@ -37,6 +37,7 @@ struct Highlight {
   double area_px = 0;
   double strength = 0;            // peak specular residual, 1 = sensor white
   double saturated_fraction = 0;  // of the blob's pixels
+  double flatness = 0;            // of its top (lobe_profile.h), 0: not known
   int light = -1;                 // index of the assigned light, -1: none yet
   HighlightStatus status = HighlightStatus::kAccepted;
 };

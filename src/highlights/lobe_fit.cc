@@ -9,13 +9,15 @@
 namespace glint {
 namespace {
 
-constexpr int kNumParams = 9;  // log amplitude, body, peak x, y, the factor of q: a, c, e, the skew: k, m
+// log amplitude, body, peak x, y, the factor of q: a, c, e, the skew: k, m, the bend b
+constexpr int kNumParams = 10;
 using Params = Eigen::Matrix<double, kNumParams, 1>;
 using Normal = Eigen::Matrix<double, kNumParams, kNumParams>;
 
 constexpr double kHalfHeightQ = 0.41421356;  // (1 + q)^-2 = 1/2
 constexpr double kReach = 3.4;               // radius of the fit in standard deviations of the blob (half height: 2)
 constexpr double kSkewSigma = 0.2;           // how lopsided lobes are on curved surfaces
+constexpr double kBendSigma = 0.3;           // and how bent
 constexpr int kMaxIterations = 20;
 constexpr int kManyPixels = 400;
 
@@ -30,21 +32,29 @@ struct Problem {
   std::vector<Sample> samples;
   double body_prior, body_sigma;
   double log_amplitude_prior;
-  bool sparse;  // every other pixel left out
+  bool sparse;                // every other pixel left out
+  Eigen::Vector2d long_axis;  // the direction of (u, v) along which the blob is longest
 };
 
-// Value and gradient of the model; u = a dx + c dy, v = e dy, q = (u² + v²) exp(k u + m v).
-double Evaluate(const Params& p, double amplitude, const Eigen::Vector2d& at, Params* gradient) {
+// Value and gradient of the model: w = (u, v) = (a dx + c dy, e dy), bent to w' = w + b (w·long)² across,
+// q = |w'|² exp(k u + m v).
+double Evaluate(const Params& p, double amplitude, const Eigen::Vector2d& long_axis, const Eigen::Vector2d& at,
+                Params* gradient) {
   const double dx = at.x() - p[2], dy = at.y() - p[3];
   const double u = p[4] * dx + p[5] * dy, v = p[6] * dy;
+  const double along = long_axis.x() * u + long_axis.y() * v;
+  const double bent_u = u - p[9] * along * along * long_axis.y(), bent_v = v + p[9] * along * along * long_axis.x();
   const double skew = std::exp(std::clamp(p[7] * u + p[8] * v, -3.0, 3.0));
-  const double q = (u * u + v * v) * skew;
+  const double q = (bent_u * bent_u + bent_v * bent_v) * skew;
   const double f = 1 / ((1 + q) * (1 + q));
   if (gradient) {
     const double df = -2 * amplitude * f / (1 + q);  // by q
-    const double du = df * (2 * u * skew + p[7] * q), dv = df * (2 * v * skew + p[8] * q);
+    const double across = bent_v * long_axis.x() - bent_u * long_axis.y();
+    const double turn = 2 * p[9] * along * across;
+    const double du = df * (2 * (bent_u + turn * long_axis.x()) * skew + p[7] * q);
+    const double dv = df * (2 * (bent_v + turn * long_axis.y()) * skew + p[8] * q);
     *gradient << amplitude * f, 1, -du * p[4], -(du * p[5] + dv * p[6]), du * dx, du * dy, dv * dy, df * q * u,
-        df * q * v;
+        df * q * v, df * 2 * across * along * along * skew;
   }
   return p[1] + amplitude * f;
 }
@@ -60,7 +70,7 @@ double Linearise(const Problem& problem, const Params& p, double scale, Normal* 
   Params g;
   const double amplitude = std::exp(p[0]);
   for (const Sample& s : problem.samples) {
-    const double r = (Evaluate(p, amplitude, s.at, hessian ? &g : nullptr) - s.value) / s.sigma;
+    const double r = (Evaluate(p, amplitude, problem.long_axis, s.at, hessian ? &g : nullptr) - s.value) / s.sigma;
     if (s.saturated && r > 0) continue;  // at least that bright
     const double ratio = r / scale;
     product *= 1 + ratio * ratio;
@@ -77,14 +87,18 @@ double Linearise(const Problem& problem, const Params& p, double scale, Normal* 
   const double body = (p[1] - problem.body_prior) / problem.body_sigma;
   const double log_amplitude = (p[0] - problem.log_amplitude_prior) / 2;
   const double skew_weight = 1 / (kSkewSigma * kSkewSigma);
-  cost += body * body + log_amplitude * log_amplitude + skew_weight * p.tail<2>().squaredNorm();
+  const double bend_weight = 1 / (kBendSigma * kBendSigma);
+  cost += body * body + log_amplitude * log_amplitude + skew_weight * p.segment<2>(7).squaredNorm() +
+          bend_weight * p[9] * p[9];
   if (hessian) {
     (*hessian)(1, 1) += 1 / (problem.body_sigma * problem.body_sigma);
     (*rhs)[1] -= body / problem.body_sigma;
     (*hessian)(0, 0) += 0.25;
     (*rhs)[0] -= log_amplitude / 2;
-    hessian->diagonal().tail<2>().array() += skew_weight;
-    rhs->tail<2>() -= skew_weight * p.tail<2>();
+    hessian->diagonal().segment<2>(7).array() += skew_weight;
+    rhs->segment<2>(7) -= skew_weight * p.segment<2>(7);
+    (*hessian)(9, 9) += bend_weight;
+    (*rhs)[9] -= bend_weight * p[9];
   }
   return cost;
 }
@@ -95,7 +109,7 @@ std::vector<double> AbsoluteResiduals(const Problem& problem, const Params& p) {
   residuals.reserve(problem.samples.size());
   const double amplitude = std::exp(p[0]);
   for (const Sample& s : problem.samples) {
-    const double r = (Evaluate(p, amplitude, s.at, nullptr) - s.value) / s.sigma;
+    const double r = (Evaluate(p, amplitude, problem.long_axis, s.at, nullptr) - s.value) / s.sigma;
     if (!s.saturated || r < 0) residuals.push_back(std::abs(r));
   }
   return residuals;
@@ -167,7 +181,7 @@ Problem Gather(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& c
 LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& centroid,
                 const Eigen::Matrix2d& moments, double body, double peak_value, double saturation) {
   LobeFit fit;
-  const Problem problem = Gather(map, mask, centroid, moments, body, peak_value, saturation);
+  Problem problem = Gather(map, mask, centroid, moments, body, peak_value, saturation);
   const size_t num_saturated =
       std::count_if(problem.samples.begin(), problem.samples.end(), [](const Sample& s) { return s.saturated; });
   if (problem.samples.size() < num_saturated + kNumParams + 1) return fit;
@@ -180,7 +194,9 @@ LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& 
   p[4] = std::sqrt(q(0, 0));
   p[5] = q(0, 1) / p[4];
   p[6] = std::sqrt(std::max(q(1, 1) - p[5] * p[5], 1e-9));
-  p.tail<2>().setZero();
+  p.tail<3>().setZero();
+  const Eigen::Vector2d major = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moments).eigenvectors().col(1);
+  problem.long_axis = Eigen::Vector2d(p[4] * major.x() + p[5] * major.y(), p[6] * major.y()).normalized();
   double scale = 1;
   if (!Minimise(problem, p, scale)) return fit;
 
@@ -196,7 +212,7 @@ LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& 
   double sum = 0, count = 0;
   for (const Sample& s : problem.samples) {
     if (s.saturated) continue;
-    const double r = std::abs(Evaluate(p, fit.amplitude, s.at, nullptr) - s.value);
+    const double r = std::abs(Evaluate(p, fit.amplitude, problem.long_axis, s.at, nullptr) - s.value);
     sum += std::min(r, 0.5 * (peak_value - body));
     ++count;
   }

@@ -18,10 +18,10 @@ struct LobeFit {
 
 // Fits  body + amplitude (1 + q(x))^-2  with q = uᵀu exp(kᵀu), u = Lᵀ(x - peak): the image of a GGX lobe on a smooth
 // surface, where the half vector's angle grows about linearly with the distance from the peak (D ~ (1 + tan²θ/α²)^-2,
-// Walter et al. 2007); k lets the lobe be lopsided, as it is where the curvature changes. Iteratively re-weighted
-// Levenberg-Marquardt with Cauchy weights over the pixels within an ellipse somewhat larger than the blob. Pixels at or
-// above `saturation` only say "at least that bright". `map`: CV_16UC1 linear; `centroid`, `moments`: of the part above
-// half height; `mask`: CV_8U or empty.
+// Walter et al. 2007); k lets the lobe be lopsided, as it is where the curvature changes, and u is bent across the
+// blob's long axis, as streaks are. Iteratively re-weighted Levenberg-Marquardt with Cauchy weights over the pixels
+// within an ellipse somewhat larger than the blob. Pixels at or above `saturation` only say "at least that bright".
+// `map`: CV_16UC1 linear; `centroid`, `moments`: of the part above half height; `mask`: CV_8U or empty.
 LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& centroid,
                 const Eigen::Matrix2d& moments, double body, double peak_value, double saturation);
 

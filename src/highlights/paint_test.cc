@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "highlights/mirror_test.h"
+
 namespace glint {
 namespace {
 
@@ -14,14 +16,20 @@ constexpr int kMaxDepths = 81;
 constexpr double kMaxStretch = 3;
 constexpr size_t kEnoughViews = 6;
 constexpr double kMinShading = 0.3;
+constexpr double kDark = 0.3;  // of the rise
 
 // How bright the light makes paint at the surface point in this view (Lambert), up to a constant; one if it stands
 // still.
-double Shading(const Light* light, const Rigid3d& cam_from_world, const SurfaceSample& at) {
-  if (!light || light->frame == LightFrame::kWorld) return 1;
-  const double cos = std::max(0.0, at.normal.dot(DirectionToLight(*light, cam_from_world, at.position)));
-  if (light->type == LightType::kDistant) return cos;
-  return cos / (cam_from_world.Inverse() * light->vector - at.position).squaredNorm();
+double Shading(const Light& light, const Rigid3d& cam_from_world, const SurfaceSample& at) {
+  if (light.frame == LightFrame::kWorld) return 1;
+  const double cos = std::max(0.0, at.normal.dot(DirectionToLight(light, cam_from_world, at.position)));
+  if (light.type == LightType::kDistant) return cos;
+  return cos / (cam_from_world.Inverse() * light.vector - at.position).squaredNorm();
+}
+
+Light MirroredAt(const SurfaceSample& at, const Eigen::Vector3d& to_camera) {
+  return {LightType::kDistant, LightFrame::kWorld, (2 * at.normal.dot(to_camera) * at.normal - to_camera).normalized(),
+          0};
 }
 
 struct OtherView {
@@ -31,12 +39,10 @@ struct OtherView {
 
 // Views in which the surface point can be seen, the light is mirrored elsewhere and paint would still be bright.
 std::vector<OtherView> ViewsToCompare(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
-                                      const Light* light, const Highlight& highlight, const SurfaceSample& at,
+                                      const Light& light, const Highlight& highlight, const SurfaceSample& at,
                                       double min_half_change_deg) {
   const View& own = scene.views[highlight.view];
-  const Eigen::Vector3d own_view = (own.Center() - at.position).normalized();
-  const Eigen::Vector3d own_half =
-      light ? HalfVector(*light, own.cam_from_world, at.position) : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d own_half = HalfVector(light, own.cam_from_world, at.position);
   const double min_cos = std::cos(kMaxViewAngleDeg * M_PI / 180);
   const double max_half_cos = std::cos(min_half_change_deg * M_PI / 180);
   const double own_shading = Shading(light, own.cam_from_world, at);
@@ -46,9 +52,7 @@ std::vector<OtherView> ViewsToCompare(const Scene& scene, const ViewBrightness& 
     if (j == highlight.view || !brightness.Has(j)) continue;
     const Eigen::Vector3d center = view.Center();
     if (at.normal.dot((center - at.position).normalized()) < min_cos) continue;
-    const double view_cos = std::clamp(own_view.dot((center - at.position).normalized()), -1.0, 1.0);
-    const double half_cos = light ? HalfVector(*light, view.cam_from_world, at.position).dot(own_half)
-                                  : std::sqrt(0.5 * (1 + view_cos));  // the cosine of half the angle
+    const double half_cos = HalfVector(light, view.cam_from_world, at.position).dot(own_half);
     if (half_cos > max_half_cos) continue;
     const auto px = view.Project(at.position);
     if (!px || !view.Contains(*px) || surface.Occluded(at, center)) continue;
@@ -81,13 +85,21 @@ std::vector<Eigen::Vector3d> PlacesAlongRay(const Scene& scene, const std::vecto
   return places;
 }
 
+// Pixels that a unit of length across the view's direction is wide.
+double SizeAt(const View& view, const Eigen::Vector3d& x) {
+  return MeanFocalLength(view.camera) / (view.Center() - x).norm();
+}
+
 }  // namespace
 
 std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& brightness, const SeedSurface& surface,
-                                     const Light* light, const Highlight& highlight, const SurfaceSample& at,
+                                     const Light* known_light, const Highlight& highlight, const SurfaceSample& at,
                                      const PaintTestOptions& options) {
   const View& view = scene.views[highlight.view];
-  const auto views = ViewsToCompare(scene, brightness, surface, light, highlight, at, options.min_half_change_deg);
+  const Light light = known_light ? *known_light : MirroredAt(at, (view.Center() - at.position).normalized());
+  const MirrorTest mirror(view, surface, light, highlight, at);
+  const auto views = ViewsToCompare(scene, brightness, surface, light, highlight, at,
+                                    std::max(options.min_half_change_deg, mirror.DarkDeg()));
   const auto ray = view.RayThrough(highlight.px);
   if (static_cast<int>(views.size()) < options.min_other_views || !ray) return std::nullopt;
 
@@ -100,6 +112,22 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
   const auto body = brightness.MedianAround(highlight.view, highlight.px, highlight.moments_px);
   if (!peak || !body || *peak - *body < 1e-3) return std::nullopt;
 
+  // The rise over what is around the place in that view: gloss brightens all of it where one looks at it aslant.
+  const auto rise = [&](const OtherView& other, const Eigen::Vector3d& place) -> std::optional<double> {
+    const View& there = scene.views[other.view];
+    const auto px = there.Project(place);
+    const auto value = px ? brightness.MaxNear(other.view, *px, radius_px) : std::nullopt;
+    if (!value) return std::nullopt;
+    const double body_there = *body * other.shading;
+    const double plain = (*value - body_there) / other.shading;
+    // Paint would be bright: what is dark says so anyhow.
+    if (plain < kDark * (*peak - *body)) return plain;
+    const auto off_deg = mirror.OffDeg(there, *px);
+    if (off_deg && *off_deg < mirror.DarkDeg()) return std::nullopt;
+    const double size = SizeAt(there, place) / SizeAt(view, place);
+    const auto around = brightness.MedianAround(other.view, *px, size * size * highlight.moments_px);
+    return (*value - std::max(around.value_or(body_there), body_there)) / other.shading;
+  };
   double kept = 0;
   bool compared = false;
   std::vector<double> ratios;
@@ -107,11 +135,8 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
   const double reach = at.error_world / std::max(-ray->dot(at.normal), 1 / kMaxStretch);
   for (const Eigen::Vector3d& place : PlacesAlongRay(scene, views, at, *ray, reach, 1.5 * radius_px)) {
     ratios.clear();
-    for (const auto& [j, shading] : views) {
-      const auto px = scene.views[j].Project(place);
-      const auto value = px ? brightness.MaxNear(j, *px, radius_px) : std::nullopt;
-      if (value) ratios.push_back((*value / shading - *body) / (*peak - *body));
-    }
+    for (const OtherView& other : views)
+      if (const auto r = rise(other, place)) ratios.push_back(*r / (*peak - *body));
     if (static_cast<int>(ratios.size()) < options.min_other_views) continue;
     std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
     kept = std::max(kept, ratios[ratios.size() / 2]);

@@ -58,7 +58,7 @@ double SeedSurface::SpreadAt(const Eigen::Vector3d& x) const {
   return std::clamp(spacing, 0.1 * max_error_world_ / kErrorOfSpread, max_error_world_ / kErrorOfSpread);
 }
 
-std::optional<SurfaceSample> SeedSurface::Hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+std::optional<SurfaceSample> SeedSurface::Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
   const auto hit = caster_.Intersect(origin, direction);
   if (!hit) return std::nullopt;
   const Eigen::Vector3i& f = faces_[hit->face];
@@ -70,7 +70,7 @@ std::optional<SurfaceSample> SeedSurface::Hit(const Eigen::Vector3d& origin, con
 std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& origin,
                                                       const Eigen::Vector3d& direction) const {
   std::vector<SurfaceSample> samples;
-  const auto central = Hit(origin, direction);
+  const auto central = Meet(origin, direction);
   const double spread_world = central ? SpreadAt(central->position) : max_error_world_ / kErrorOfSpread;
   if (central && central->normal.dot(direction) < 0) samples.push_back(*central);
   const double depth = central ? (central->position - origin).norm() : (center_ - origin).dot(direction);
@@ -81,7 +81,7 @@ std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& ori
     for (int k = 0; k < count; ++k) {
       const double a = 2 * M_PI * (k + radius) / count;
       const Eigen::Vector3d offset = radius * spread_world * (std::cos(a) * e1 + std::sin(a) * e2);
-      auto sample = Hit(origin, (depth * direction + offset).normalized());
+      auto sample = Meet(origin, (depth * direction + offset).normalized());
       // What lies far in front or behind is another part of the surface.
       if (!sample || sample->normal.dot(direction) >= 0) continue;
       if (central && std::abs((sample->position - origin).norm() - depth) > 4 * spread_world) continue;

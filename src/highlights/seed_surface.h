@@ -33,14 +33,15 @@ class SeedSurface {
   // the origin. The central ray comes first if it hits. Empty: off the surface.
   std::vector<SurfaceSample> Neighbourhood(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
+  // Where the ray meets the seed; position and normal only.
+  std::optional<SurfaceSample> Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+
   // True if the seed stands between a surface point and another point by more than it may be off at the first.
   bool Occluded(const SurfaceSample& from, const Eigen::Vector3d& to) const;
 
   double diagonal() const { return diagonal_; }
 
  private:
-  std::optional<SurfaceSample> Hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
-
   double SpreadAt(const Eigen::Vector3d& x) const;
 
   std::vector<Eigen::Vector3i> faces_;

@@ -6,13 +6,14 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "highlights/brightness.h"
 
 namespace glint {
 
 ViewBrightness::ViewBrightness(const ImageSource& images, size_t memory_bytes, Progress& progress)
-    : maps_(images.size()), masks_(images.size()), sizes_(images.size(), 1) {
+    : maps_(images.size()), masks_(images.size()), sizes_(images.size(), 1), exposures_(images.size(), 1) {
   const size_t bytes_a_view = memory_bytes / std::max<size_t>(images.size(), 1);
   progress.Begin("Brightness of the views", images.size());
   ParallelFor(images.size(), 1, [&](size_t view) {
@@ -33,24 +34,40 @@ ViewBrightness::ViewBrightness(const ImageSource& images, size_t memory_bytes, P
   });
 }
 
-std::optional<double> ViewBrightness::MaxNear(size_t view, const Eigen::Vector2d& px, double radius_px) const {
+void ViewBrightness::Equalise(std::vector<double> exposures) {
+  GLINT_CHECK_EQ(exposures.size(), maps_.size());
+  exposures_ = std::move(exposures);
+}
+
+cv::Rect ViewBrightness::Window(size_t view, const Eigen::Vector2d& px, double radius_px) const {
   const cv::Mat& map = maps_[view];
   const cv::Mat& mask = masks_[view];
   const double x = px.x() / sizes_[view] - 0.5, y = px.y() / sizes_[view] - 0.5;
   const double r = std::max(radius_px / sizes_[view], 0.5);
-  if (map.empty() || x < 0 || y < 0 || x > map.cols - 1 || y > map.rows - 1) return std::nullopt;
-  if (!mask.empty() && !mask.at<uint8_t>(static_cast<int>(std::lround(y)), static_cast<int>(std::lround(x))))
-    return std::nullopt;
+  if (map.empty() || x < 0 || y < 0 || x > map.cols - 1 || y > map.rows - 1) return {};
+  if (!mask.empty() && !mask.at<uint8_t>(static_cast<int>(std::lround(y)), static_cast<int>(std::lround(x)))) return {};
   const int x0 = std::max(0, static_cast<int>(std::ceil(x - r)));
   const int x1 = std::min(map.cols - 1, static_cast<int>(std::floor(x + r)));
   const int y0 = std::max(0, static_cast<int>(std::ceil(y - r)));
   const int y1 = std::min(map.rows - 1, static_cast<int>(std::floor(y + r)));
+  return {x0, y0, x1 - x0 + 1, y1 - y0 + 1};
+}
+
+std::optional<double> ViewBrightness::MaxNear(size_t view, const Eigen::Vector2d& px, double radius_px) const {
+  const cv::Rect window = Window(view, px, radius_px);
+  if (window.empty()) return std::nullopt;
   uint16_t best = 0;
-  for (int v = y0; v <= y1; ++v) {
-    const uint16_t* row = map.ptr<uint16_t>(v);
-    best = std::max(best, *std::max_element(row + x0, row + x1 + 1));
+  for (int v = window.y; v < window.y + window.height; ++v) {
+    const uint16_t* row = maps_[view].ptr<uint16_t>(v) + window.x;
+    best = std::max(best, *std::max_element(row, row + window.width));
   }
-  return best / 65535.0;
+  return best / 65535.0 / exposures_[view];
+}
+
+std::optional<double> ViewBrightness::MeanNear(size_t view, const Eigen::Vector2d& px, double radius_px) const {
+  const cv::Rect window = Window(view, px, radius_px);
+  if (window.empty()) return std::nullopt;
+  return cv::mean(maps_[view](window))[0] / 65535.0 / exposures_[view];
 }
 
 std::optional<double> ViewBrightness::MedianAround(size_t view, const Eigen::Vector2d& px,
@@ -71,7 +88,7 @@ std::optional<double> ViewBrightness::MedianAround(size_t view, const Eigen::Vec
   }
   if (values.empty()) return std::nullopt;
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2] / 65535.0;
+  return values[values.size() / 2] / 65535.0 / exposures_[view];
 }
 
 }  // namespace glint

@@ -20,9 +20,16 @@ class ViewBrightness {
 
   bool Has(size_t view) const { return !maps_[view].empty(); }
 
+  // From now on values are divided by these factors, one a view (exposure.h).
+  void Equalise(std::vector<double> exposures);
+  double Exposure(size_t view) const { return exposures_[view]; }
+
   // Largest value (1 = sensor white) within `radius_px` image pixels of a pixel in COLMAP's frame; nullopt off the
   // image or where the mask ignores it.
   std::optional<double> MaxNear(size_t view, const Eigen::Vector2d& px, double radius_px) const;
+
+  // Mean over the same pixels.
+  std::optional<double> MeanNear(size_t view, const Eigen::Vector2d& px, double radius_px) const;
 
   // Median on an ellipse: three standard deviations of `moments_px` around `px`. nullopt if all of it is off the image.
   std::optional<double> MedianAround(size_t view, const Eigen::Vector2d& px, const Eigen::Matrix2d& moments_px) const;
@@ -31,9 +38,13 @@ class ViewBrightness {
   double PixelSize(size_t view) const { return sizes_[view]; }
 
  private:
+  // The map's pixels within the radius; empty where MaxNear() is nullopt.
+  cv::Rect Window(size_t view, const Eigen::Vector2d& px, double radius_px) const;
+
   std::vector<cv::Mat> maps_;   // CV_16UC1, 65535 = sensor white
   std::vector<cv::Mat> masks_;  // CV_8UC1 of the same size, or empty
   std::vector<double> sizes_;
+  std::vector<double> exposures_;
 };
 
 }  // namespace glint

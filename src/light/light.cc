@@ -1,6 +1,12 @@
 #include "light/light.h"
 
+#include <algorithm>
+
 namespace glint {
+
+bool ShinesIn(const Light& light, const std::string& image) {
+  return light.images.empty() || std::find(light.images.begin(), light.images.end(), image) != light.images.end();
+}
 
 Eigen::Vector3d DirectionToLight(const Light& light, const Rigid3d& cam_from_world, const Eigen::Vector3d& x_in_world) {
   if (light.type == LightType::kDistant)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "geometry/rigid.h"
@@ -19,7 +19,10 @@ struct Light {
   Eigen::Vector3d vector = Eigen::Vector3d::UnitZ();
   // Standard deviation: degrees (distant) or world units (point); 0: taken as exact.
   double sigma = 0;
+  std::vector<std::string> images = {};  // names of the photographs in which it shines; empty: all
 };
+
+bool ShinesIn(const Light& light, const std::string& image);
 
 // Unit direction from the surface point to the light, in the world.
 Eigen::Vector3d DirectionToLight(const Light& light, const Rigid3d& cam_from_world, const Eigen::Vector3d& x_in_world);

@@ -5,16 +5,12 @@
 #include <cmath>
 
 namespace glint {
-namespace {
-
 Light Moved(const Light& light, double diagonal, const Eigen::Vector3d& step) {
   Light moved = light;
   moved.vector += TangentBasis(light, diagonal) * step;
   if (light.type == LightType::kDistant) moved.vector.normalize();
   return moved;
 }
-
-}  // namespace
 
 Eigen::Matrix3d TangentBasis(const Light& light, double diagonal) {
   if (light.type == LightType::kPoint) return diagonal * Eigen::Matrix3d::Identity();
@@ -35,6 +31,18 @@ double Disagreement(const LightObservation& observation, const Light& light, dou
   return std::atan2(half.cross(observation.normal).norm(), half.dot(observation.normal));
 }
 
+Eigen::Matrix3d HalfVectorJacobian(const LightObservation& o, const Light& light, double diagonal) {
+  constexpr double kStep = 1e-5;
+  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+  for (int p = 0; p < NumParameters(light); ++p) {
+    const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(p);
+    jacobian.col(p) = (HalfVector(Moved(light, diagonal, step), o.cam_from_world, o.position) -
+                       HalfVector(Moved(light, diagonal, -step), o.cam_from_world, o.position)) /
+                      (2 * kStep);
+  }
+  return jacobian;
+}
+
 LightEquations LineariseLight(const std::vector<LightObservation>& observations, const Eigen::VectorXd& weights,
                               const Light& light, double max_incidence_deg, double diagonal, double prior) {
   LightEquations equations;
@@ -44,20 +52,12 @@ LightEquations LineariseLight(const std::vector<LightObservation>& observations,
     equations.gradient = prior * x;
     equations.cost = prior * x.squaredNorm();
   }
-  constexpr double kStep = 1e-5;
-  const int parameters = NumParameters(light);
   for (size_t i = 0; i < observations.size(); ++i) {
     if (weights[i] < 1e-3) continue;
     const LightObservation& o = observations[i];
     if (Disagreement(o, light, max_incidence_deg) > 3) continue;
     const Eigen::Vector3d r = HalfVector(light, o.cam_from_world, o.position) - o.normal;
-    Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
-    for (int p = 0; p < parameters; ++p) {
-      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(p);
-      jacobian.col(p) = (HalfVector(Moved(light, diagonal, step), o.cam_from_world, o.position) -
-                         HalfVector(Moved(light, diagonal, -step), o.cam_from_world, o.position)) /
-                        (2 * kStep);
-    }
+    const Eigen::Matrix3d jacobian = HalfVectorJacobian(o, light, diagonal);
     equations.hessian += weights[i] * jacobian.transpose() * jacobian;
     equations.gradient += weights[i] * jacobian.transpose() * r;
     equations.cost += weights[i] * r.squaredNorm();

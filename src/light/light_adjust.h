@@ -15,9 +15,15 @@ int NumParameters(const Light& light);
 // What a step of one in each coordinate adds to light.vector; the third column is zero for a distant light.
 Eigen::Matrix3d TangentBasis(const Light& light, double diagonal);
 
-// Gauss-Newton equations of sum w |h - n|², h the half vector and n the normal, by central differences in the tangent
-// coordinates. Observations beyond the incidence limit do not count. To the cost of a point light in the camera's frame
-// `prior` times its squared distance from the camera, in diagonals, is added.
+// Derivative of the half vector by the tangent coordinates, by central differences.
+Eigen::Matrix3d HalfVectorJacobian(const LightObservation& observation, const Light& light, double diagonal);
+
+// The light after a step in its tangent coordinates.
+Light Moved(const Light& light, double diagonal, const Eigen::Vector3d& step);
+
+// Gauss-Newton equations of sum w |h - n|², h the half vector and n the normal, in the tangent coordinates.
+// Observations beyond the incidence limit do not count. To the cost of a point light in the camera's frame `prior`
+// times its squared distance from the camera, in diagonals, is added.
 struct LightEquations {
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();

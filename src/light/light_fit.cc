@@ -9,6 +9,7 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "light/light_adjust.h"
+#include "light/light_covariance.h"
 #include "light/light_starts.h"
 
 namespace glint {
@@ -298,6 +299,9 @@ class Fitter {
     without.sigmas.erase(without.sigmas.begin() + static_cast<long>(j));
     Finish(without);
     out.criterion_gain = without.criterion - m.criterion;
+    out.covariance = LightCovariance(observations_, m.responsibilities.col(static_cast<long>(j)), m.sigmas[j],
+                                     options_.max_incidence_deg, diagonal_, Prior(m.sigmas[j]), out.light);
+    out.light.sigma = LargestSigma(out.covariance, out.light);
     return out;
   }
 

@@ -91,6 +91,17 @@ struct Record {
     return it->get<std::string>();
   }
 
+  std::vector<std::string> OptionalNames(const char* key) const {
+    std::vector<std::string> names;
+    const auto it = value.find(key);
+    if (it == value.end()) return names;
+    const bool sound = it->is_array() && !it->empty() &&
+                       std::all_of(it->begin(), it->end(), [](const json& one) { return one.is_string(); });
+    if (!sound) Fail(fmt::format("\"{}\" must be a list of at least one name, found {}", key, it->dump()));
+    for (const json& one : *it) names.push_back(one.get<std::string>());
+    return names;
+  }
+
   void AllowOnly(std::initializer_list<std::string_view> keys) const {
     for (const auto& item : value.items()) {
       bool known = false;
@@ -105,14 +116,16 @@ Light ParseLight(const Record& record) {
   Light light;
   light.type = record.RequireOneOf("type", "distant", "point") == "distant" ? LightType::kDistant : LightType::kPoint;
   light.frame = record.RequireOneOf("frame", "world", "camera") == "world" ? LightFrame::kWorld : LightFrame::kCamera;
+  light.images = record.OptionalNames("images");
   if (light.type == LightType::kPoint) {
-    record.AllowOnly({"type", "frame", "position", "sigma", "covariance", "support", "conditioning", "why"});
+    record.AllowOnly({"type", "frame", "position", "sigma", "covariance", "support", "conditioning", "why", "images",
+                      "angular_size_deg"});
     light.vector = record.RequireVector("position");
     light.sigma = record.OptionalNumber("sigma");
     return light;
   }
-  record.AllowOnly(
-      {"type", "frame", "direction_to_light", "sigma_deg", "covariance", "support", "conditioning", "why"});
+  record.AllowOnly({"type", "frame", "direction_to_light", "sigma_deg", "covariance", "support", "conditioning", "why",
+                    "images", "angular_size_deg"});
   light.vector = record.RequireVector("direction_to_light");
   light.sigma = record.OptionalNumber("sigma_deg");
   const double length = light.vector.stableNorm();
@@ -127,6 +140,7 @@ FoundLight ParseFoundLight(const Record& record, bool determined) {
   found.covariance = record.OptionalCovariance();
   found.support = record.OptionalNumber("support");
   found.conditioning = record.OptionalNumber("conditioning");
+  found.angular_size_deg = record.OptionalNumber("angular_size_deg");
   found.determined = determined;
   found.why = record.OptionalText("why");
   return found;
@@ -139,6 +153,7 @@ ordered_json ToJson(const Light& light) {
   out["frame"] = light.frame == LightFrame::kWorld ? "world" : "camera";
   out[distant ? "direction_to_light" : "position"] = {light.vector.x(), light.vector.y(), light.vector.z()};
   if (light.sigma > 0) out[distant ? "sigma_deg" : "sigma"] = light.sigma;
+  if (!light.images.empty()) out["images"] = light.images;
   return out;
 }
 
@@ -148,6 +163,7 @@ ordered_json ToJson(const FoundLight& found) {
   if (!c.isZero()) out["covariance"] = {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
   if (found.support > 0) out["support"] = found.support;
   if (found.conditioning > 0) out["conditioning"] = found.conditioning;
+  if (found.angular_size_deg > 0) out["angular_size_deg"] = found.angular_size_deg;
   if (!found.why.empty()) out["why"] = found.why;
   return out;
 }

@@ -107,6 +107,21 @@ Shading ShadeObject(const Stage& stage, const StageView& view, const SurfaceHit&
   return shading;
 }
 
+// GGX with Smith's masking and Fresnel's term, times the cosine of the light.
+Array3d Lobe(double alpha, const Array3d& reflectance, const Vector3d& normal, const Vector3d& to_viewer,
+             const Vector3d& to_light) {
+  const double nl = normal.dot(to_light), nv = normal.dot(to_viewer);
+  if (nl <= 0 || nv <= 0) return Array3d::Zero();
+  const Vector3d half = (to_light + to_viewer).normalized();
+  const double alpha2 = alpha * alpha;
+  const double sine2 = normal.cross(half).squaredNorm();
+  const double slope = sine2 + alpha2 * (1 - sine2);
+  const double d = alpha2 / (std::numbers::pi * slope * slope);
+  const double masking =
+      0.5 / (nl * std::sqrt(nv * nv * (1 - alpha2) + alpha2) + nv * std::sqrt(nl * nl * (1 - alpha2) + alpha2));
+  return d * masking * nl * Fresnel(reflectance, half.dot(to_viewer));
+}
+
 }  // namespace
 
 Array3d SpecularLobe(const Stage& stage, size_t light, const Rigid3d& cam_from_stage, const Vector3d& x,
@@ -115,16 +130,22 @@ Array3d SpecularLobe(const Stage& stage, size_t light, const Rigid3d& cam_from_s
   const Vector3d to_light = DirectionToLight(source.light, cam_from_stage, x);
   const double nl = normal.dot(to_light), nv = normal.dot(to_viewer);
   if (nl <= 0 || nv <= 0) return Array3d::Zero();
-  const Vector3d half = (to_light + to_viewer).normalized();
-  // A disc of light widens the lobe about as a rougher surface does.
-  const double alpha2 = std::pow(stage.gloss.alpha, 2) + std::pow(0.5 * stage.light_radius, 2);
-  const double sine2 = normal.cross(half).squaredNorm();
-  const double slope = sine2 + alpha2 * (1 - sine2);
-  const double d = alpha2 / (std::numbers::pi * slope * slope);
-  const double masking =
-      0.5 / (nl * std::sqrt(nv * nv * (1 - alpha2) + alpha2) + nv * std::sqrt(nl * nl * (1 - alpha2) + alpha2));
-  const double received = std::numbers::pi * Irradiance(source, cam_from_stage, x) * nl;
-  return stage.exposure * d * masking * received * Fresnel(stage.ReflectanceAt(x), half.dot(to_viewer));
+  const double received = stage.exposure * std::numbers::pi * Irradiance(source, cam_from_stage, x);
+  const Array3d reflectance = stage.ReflectanceAt(x);
+  const double sine = normal.cross((to_light + to_viewer).normalized()).norm();
+  // Far from the peak the lobe is straight across the lamp.
+  if (stage.light_radius == 0 || sine > 3 * (stage.light_radius + stage.gloss.alpha))
+    return received * Lobe(stage.gloss.alpha, reflectance, normal, to_viewer, to_light);
+  // The mean over the lamp's disc, on a sunflower's spiral.
+  constexpr int kPoints = 80;
+  const Vector3d side = to_light.unitOrthogonal(), other = to_light.cross(side);
+  Array3d sum = Array3d::Zero();
+  for (int i = 0; i < kPoints; ++i) {
+    const double r = stage.light_radius * std::sqrt((i + 0.5) / kPoints), angle = 2.39996323 * i;
+    const Vector3d direction = (to_light + r * (std::cos(angle) * side + std::sin(angle) * other)).normalized();
+    sum += Lobe(stage.gloss.alpha, reflectance, normal, to_viewer, direction);
+  }
+  return received * sum / kPoints;
 }
 
 Shading Shade(const Stage& stage, const StageView& view, const SurfaceHit& hit, const Vector3d& direction,

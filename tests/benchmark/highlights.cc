@@ -12,94 +12,26 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "colmap/project.h"
+#include "core/parallel.h"
 #include "highlights/brightness.h"
+#include "highlights/detect.h"
 #include "highlights/gate.h"
 #include "highlights/overlay.h"
 #include "io/project_images.h"
 #include "light/light_io.h"
-#include "pipeline/image_stages.h"
-#include "pipeline/seed_stage.h"
-#include "pipeline/terminal.h"
+#include "seed/build_seed.h"
 #include "synthetic/synthesize.h"
+#include "tests/benchmark/highlight_peers.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Peak {
-  Eigen::Vector2d px;  // COLMAP's frame
-  double area_px = 0;
-};
-
-// Centroids of the pieces of a mask, weighed by `weight` (CV_32F).
-std::vector<Peak> Pieces(const cv::Mat& mask, const cv::Mat& weight) {
-  cv::Mat labels;
-  const int count = cv::connectedComponents(mask, labels, 8, CV_32S);
-  std::vector<Eigen::Vector4d> sums(static_cast<size_t>(count), Eigen::Vector4d::Zero());
-  for (int y = 0; y < mask.rows; ++y)
-    for (int x = 0; x < mask.cols; ++x) {
-      const double w = weight.at<float>(y, x);
-      sums[static_cast<size_t>(labels.at<int>(y, x))] += Eigen::Vector4d(w * (x + 0.5), w * (y + 0.5), w, 1);
-    }
-  std::vector<Peak> peaks;
-  for (size_t k = 1; k < sums.size(); ++k)
-    if (sums[k][2] > 0 && sums[k][3] >= 4) peaks.push_back({sums[k].head<2>() / sums[k][2], sums[k][3]});
-  return peaks;
-}
-
-std::vector<Peak> PlainThreshold(const cv::Mat& image) {
-  cv::Mat map;
-  LinearMinChannel(image).convertTo(map, CV_32F, 1 / 65535.0);
-  return Pieces(map > 0.8, map);
-}
-
-// Shen, Zheng, Real-time highlight removal using intensity ratio, Applied Optics 52, 2013: pixels are grouped by the
-// minimum and maximum of their pseudo-chromaticity; in a group the ratio of maximum to range is that of the diffuse
-// part (median); what exceeds it is specular.
-std::vector<Peak> ShenZheng(const cv::Mat& image) {
-  constexpr int kBins = 12;
-  const cv::Size size = image.size();
-  cv::Mat low(size, CV_32F), high(size, CV_32F), group(size, CV_32S), specular = cv::Mat::zeros(size, CV_32F);
-  double mean_low = 0;
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) {
-      const auto& p = image.at<cv::Vec3b>(y, x);
-      const auto [a, b] = std::minmax({p[0], p[1], p[2]});
-      low.at<float>(y, x) = a, high.at<float>(y, x) = b;
-      mean_low += a / double(size.area());
-    }
-  std::vector<std::vector<float>> ratios(kBins * kBins);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) {
-      const auto& p = image.at<cv::Vec3b>(y, x);
-      const double a = low.at<float>(y, x), b = high.at<float>(y, x);
-      const double sum = p[0] + p[1] + p[2] - 3 * a + 3 * mean_low;  // pseudo specular-free
-      const int i = std::min(kBins - 1, int(kBins * 3 * mean_low / std::max(sum, 1e-6)));
-      const int j = std::min(kBins - 1, int(kBins * (b - a + mean_low) / std::max(sum, 1e-6)));
-      group.at<int>(y, x) = i * kBins + j;
-      if (a > mean_low && b > a) ratios[static_cast<size_t>(i * kBins + j)].push_back(float(b / (b - a)));
-    }
-  std::vector<double> ratio(ratios.size(), 0);
-  for (size_t k = 0; k < ratios.size(); ++k) {
-    if (ratios[k].empty()) continue;
-    auto middle = ratios[k].begin() + static_cast<long>(ratios[k].size() / 2);
-    std::nth_element(ratios[k].begin(), middle, ratios[k].end());
-    ratio[k] = *middle;
-  }
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) {
-      const double a = low.at<float>(y, x), b = high.at<float>(y, x);
-      if (a <= mean_low) continue;
-      const double diffuse = ratio[static_cast<size_t>(group.at<int>(y, x))] * (b - a);
-      specular.at<float>(y, x) = static_cast<float>(std::clamp((b - diffuse) / 255, 0.0, 1.0));
-    }
-  return Pieces(specular > 0.3, specular);
-}
 
 struct Score {
   size_t found = 0, right = 0, expected = 0, met = 0;
@@ -112,89 +44,150 @@ struct Score {
     std::nth_element(errors_px.begin(), errors_px.begin() + errors_px.size() / 2, errors_px.end());
     return errors_px[errors_px.size() / 2];
   }
+  void Add(const Score& s) {
+    found += s.found, right += s.right, expected += s.expected, met += s.met;
+    errors_px.insert(errors_px.end(), s.errors_px.begin(), s.errors_px.end());
+  }
 };
 
-// A match: within 2 px or a fifth of its diameter of the true peak. Expected are those that are lit, at an incidence
-// that counts, and not faint.
-void Count(const std::vector<Peak>& peaks, const std::vector<TrueHighlight>& truth,
-           const std::vector<uint8_t>& expected, Score& score) {
-  std::vector<char> met(truth.size(), 0);
+using Scores = std::vector<std::pair<std::string, Score>>;
+using Reasons = std::map<std::string, int>;
+
+struct ViewData {
+  cv::Mat image;
+  std::vector<TrueHighlight> truth;  // lit
+  std::vector<char> expected;        // of the truth: not faint, at an incidence that counts
+};
+
+double Reach(double area_px) { return std::max(2.0, 0.2 * 2 * std::sqrt(area_px / M_PI)); }
+
+// The nearest true peak within 2 px or a fifth of the blob's diameter; truth.size(): none.
+size_t Match(const Peak& p, const std::vector<TrueHighlight>& truth) {
+  size_t best = truth.size();
+  double nearest = Reach(p.area_px);
+  for (size_t t = 0; t < truth.size(); ++t)
+    if ((truth[t].px - p.px).norm() <= nearest) nearest = (truth[t].px - p.px).norm(), best = t;
+  return best;
+}
+
+// A true peak is met once: what is found there again is wrong.
+void Count(const std::vector<Peak>& peaks, const ViewData& view, Score& score) {
+  std::vector<char> met(view.truth.size(), 0);
   for (const Peak& p : peaks) {
-    const double reach = std::max(2.0, 0.2 * 2 * std::sqrt(p.area_px / M_PI));
-    size_t best = truth.size();
-    double nearest = reach;
-    for (size_t t = 0; t < truth.size(); ++t)
-      if ((truth[t].px - p.px).norm() <= nearest) nearest = (truth[t].px - p.px).norm(), best = t;
+    const size_t t = Match(p, view.truth);
     ++score.found;
-    if (best == truth.size()) continue;
+    if (t == view.truth.size() || met[t]) continue;
     ++score.right;
-    met[best] = 1;
-    score.errors_px.push_back(nearest);
+    met[t] = 1;
+    score.errors_px.push_back((view.truth[t].px - p.px).norm());
   }
-  for (size_t t = 0; t < truth.size(); ++t) {
-    score.expected += expected[t];
-    score.met += expected[t] && met[t];
+  for (size_t t = 0; t < view.truth.size(); ++t) {
+    score.expected += view.expected[t];
+    score.met += view.expected[t] && met[t];
   }
 }
 
-void PrintScores(const std::string& name, std::vector<std::pair<std::string, Score>> scores) {
-  fmt::print("{:<36}", name);
+std::vector<Peak> AcceptedPeaks(const std::vector<Highlight>& highlights, size_t view) {
+  std::vector<Peak> peaks;
+  for (const Highlight& h : highlights)
+    if (h.view == view && h.status == HighlightStatus::kAccepted) peaks.push_back({h.px, h.area_px});
+  return peaks;
+}
+
+// Why expected highlights are missing after the gate, and what the accepted wrong ones are.
+void Explain(const std::vector<Highlight>& highlights, size_t v, const ViewData& view, Reasons& reasons) {
+  for (size_t t = 0; t < view.truth.size(); ++t) {
+    if (!view.expected[t]) continue;
+    std::string why = "missed: no candidate";
+    for (const Highlight& h : highlights) {
+      if (h.view != v || Match({h.px, h.area_px}, {view.truth[t]}) != 0) continue;
+      if (h.status == HighlightStatus::kAccepted) {
+        why.clear();
+        break;
+      }
+      if (why == "missed: no candidate") why = fmt::format("missed: {}", StatusName(h.status));
+    }
+    if (!why.empty()) ++reasons[why];
+  }
+  for (const Highlight& h : highlights) {
+    if (h.view != v || h.status != HighlightStatus::kAccepted) continue;
+    if (Match({h.px, h.area_px}, view.truth) < view.truth.size()) continue;
+    const bool near = Match({h.px, 25 * h.area_px}, view.truth) < view.truth.size();
+    ++reasons[near ? "wrong: within a diameter of a peak" : "wrong: elsewhere"];
+  }
+}
+
+void PrintScores(const std::string& name, Scores scores) {
+  fmt::print("{:<40}", name);
   for (auto& [method, s] : scores)
     fmt::print(" | {} {:.3f} {:.3f} {:>5.2f}", method, s.Precision(), s.Recall(), s.MedianError());
+  if (!scores.empty()) fmt::print(" | {} expected", scores[0].second.expected);
   fmt::print("\n");
   std::fflush(stdout);
 }
 
-using Scores = std::vector<std::pair<std::string, Score>>;
+std::vector<Highlight> DetectAll(const ImageSource& images) {
+  std::vector<std::vector<Highlight>> by_view(images.size());
+  ParallelFor(images.size(), 1, [&](size_t v) {
+    cv::Mat image, mask;
+    if (!images.Load(v, image)) return;
+    images.LoadMask(v, mask);
+    by_view[v] = DetectHighlights(image, mask, static_cast<uint32_t>(v), {});
+  });
+  std::vector<Highlight> all;
+  for (const auto& found : by_view) all.insert(all.end(), found.begin(), found.end());
+  return all;
+}
 
-void MeasureScene(const SyntheticOptions& options, Scores& total) {
+std::vector<ViewData> Photograph(const SyntheticScene& synthetic, const Scene& scene) {
+  std::vector<ViewData> views(scene.views.size());
+  for (size_t v = 0; v < views.size(); ++v) {
+    ViewTruth truth;
+    cv::Mat image;
+    RenderView(synthetic, v, image, truth);
+    views[v].image = cv::imdecode(EncodeImage(synthetic, image), cv::IMREAD_COLOR);
+    for (const TrueHighlight& t : truth.highlights) {
+      if (!t.lit) continue;
+      const double cos = t.normal.dot((scene.views[v].Center() - t.position).normalized());
+      views[v].truth.push_back(t);
+      views[v].expected.push_back(t.strength > 0.1 && cos > std::cos(60 * M_PI / 180));
+    }
+  }
+  return views;
+}
+
+void MeasureScene(const SyntheticOptions& options, bool explain, Scores& total) {
   const SyntheticScene synthetic = SynthesizeScene(options);
   const Scene scene = MakeScene(synthetic.model);
-  std::vector<cv::Mat> images(scene.views.size());
-  std::vector<std::vector<TrueHighlight>> truth(scene.views.size());
-  for (size_t v = 0; v < scene.views.size(); ++v) {
-    ViewTruth view_truth;
-    RenderView(synthetic, v, images[v], view_truth);
-    images[v] = cv::imdecode(EncodeImage(synthetic, images[v]), cv::IMREAD_COLOR);
-    truth[v] = view_truth.highlights;
-  }
+  const std::vector<ViewData> views = Photograph(synthetic, scene);
+  std::vector<cv::Mat> images;
+  for (const ViewData& view : views) images.push_back(view.image);
   const MemoryImages source(images);
-  Config config;
-  Terminal quiet(Verbosity::kQuiet);
-  std::vector<Highlight> highlights = DetectInAllViews(scene, source, config.detect, quiet);
-  std::vector<Highlight> candidates = highlights;
-  const SeedStageResult seed = RunSeedStage(scene, source, "", config, quiet);
-  if (seed.start.empty()) {
-    fmt::print("{}: no seed\n", options.scene);
-    return;
-  }
-  GateHighlights(scene, source, seed.start, synthetic.lights, config.gate, highlights);
+  const std::vector<Highlight> candidates = DetectAll(source);
+  SeedSummary seed_summary;
+  const SeedResult seed = BuildSeed(scene, {}, &seed_summary);
+  if (seed.smooth.empty()) return fmt::print("{}: no seed\n", options.scene);
+  std::vector<Highlight> gated = candidates;
+  GateHighlights(scene, source, seed.smooth, synthetic.lights, {}, gated);
   Scores scores = {{"detected", {}}, {"gated", {}}, {"threshold", {}}, {"Shen&Zheng", {}}};
-  for (size_t v = 0; v < scene.views.size(); ++v) {
-    std::vector<uint8_t> expected;
-    for (const TrueHighlight& t : truth[v]) {
-      const double cos = t.normal.dot((scene.views[v].Center() - t.position).normalized());
-      expected.push_back(t.lit && t.strength > 0.1 && cos > std::cos(60 * M_PI / 180));
-    }
-    std::vector<Peak> all, accepted;
-    for (const Highlight& h : candidates)
-      if (h.view == v && h.status == HighlightStatus::kAccepted) all.push_back({h.px, h.area_px});
-    for (const Highlight& h : highlights)
-      if (h.view == v && h.status == HighlightStatus::kAccepted) accepted.push_back({h.px, h.area_px});
-    Count(all, truth[v], expected, scores[0].second);
-    Count(accepted, truth[v], expected, scores[1].second);
-    Count(PlainThreshold(images[v]), truth[v], expected, scores[2].second);
-    Count(ShenZheng(images[v]), truth[v], expected, scores[3].second);
+  Reasons reasons;
+  for (size_t v = 0; v < views.size(); ++v) {
+    Count(AcceptedPeaks(candidates, v), views[v], scores[0].second);
+    Count(AcceptedPeaks(gated, v), views[v], scores[1].second);
+    Count(PlainThreshold(views[v].image), views[v], scores[2].second);
+    Count(ShenZheng(views[v].image), views[v], scores[3].second);
+    Explain(gated, v, views[v], reasons);
   }
   PrintScores(fmt::format("{} a={} {} n={} q={} lamp={}", options.scene, options.roughness, options.base,
                           options.noise_levels, options.jpeg_quality, options.light_angle_deg),
               scores);
+  if (explain) fmt::print("    {}\n", seed_summary.BriefReport());
+  if (explain)
+    for (const auto& [reason, count] : reasons) fmt::print("    {} {}\n", count, reason);
   total.resize(scores.size());
   for (size_t m = 0; m < scores.size(); ++m) {
     total[m].first = scores[m].first;
-    Score &sum = total[m].second, &s = scores[m].second;
-    sum.found += s.found, sum.right += s.right, sum.expected += s.expected, sum.met += s.met;
-    sum.errors_px.insert(sum.errors_px.end(), s.errors_px.begin(), s.errors_px.end());
+    total[m].second.Add(scores[m].second);
   }
 }
 
@@ -203,12 +196,10 @@ void MeasureScene(const SyntheticOptions& options, Scores& total) {
 void MeasureVase(const fs::path& vase) {
   const ProjectPaths paths = FindProject(vase / "project");
   const Scene scene = MakeScene(ReadModel(paths.model));
-  Terminal quiet(Verbosity::kQuiet);
-  const ProjectImages images(scene, paths, quiet);
-  Config config;
-  const SeedStageResult seed = RunSeedStage(scene, images, "", config, quiet);
-  std::vector<Highlight> highlights = DetectInAllViews(scene, images, config.detect, quiet);
-  GateHighlights(scene, images, seed.start, ReadLights(vase / "lights.json"), config.gate, highlights);
+  const ProjectImages images(scene, paths, Progress::Silent());
+  const SeedResult seed = BuildSeed(scene);
+  std::vector<Highlight> highlights = DetectAll(images);
+  GateHighlights(scene, images, seed.smooth, ReadLights(vase / "lights.json"), {}, highlights);
   size_t found = 0, right = 0, pieces = 0, met = 0;
   double mask_both = 0, mask_found = 0, mask_true = 0;
   for (size_t v = 0; v < scene.views.size(); ++v) {
@@ -286,6 +277,7 @@ int Main(int argc, char** argv) {
   std::vector<double> roughness = {0.05, 0.2}, noise = {1}, lamp = {0};
   std::vector<fs::path> folders;
   fs::path vase;
+  bool explain = false;
   SyntheticOptions options;
   options.views = 20;
   options.width = 480;
@@ -300,6 +292,8 @@ int Main(int argc, char** argv) {
   app.add_option("--views", options.views, "views");
   app.add_option("--width", options.width, "px");
   app.add_option("--height", options.height, "px");
+  app.add_flag("--explain", explain, "why expected ones are missing and what the wrong ones are");
+  app.add_option("--seed", options.seed, "of the scene");
   app.add_option("--vase", vase, "folder of the vase");
   app.add_option("--throughput", folders, "folders of images")->delimiter(',');
   CLI11_PARSE(app, argc, argv);
@@ -313,7 +307,7 @@ int Main(int argc, char** argv) {
             if (scene == "none") continue;
             options.scene = scene, options.base = base, options.roughness = alpha, options.noise_levels = n;
             options.light_angle_deg = l;
-            MeasureScene(options, total);
+            MeasureScene(options, explain, total);
           }
   if (!total.empty()) PrintScores("all", total);
   if (!vase.empty()) MeasureVase(vase);

@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <random>
 
 #include "highlights/check_lights.h"
 #include "highlights/detect.h"
+#include "io/project_images.h"
+#include "rendered_scene.h"
 #include "synthetic/synthetic_image_source.h"
 
 namespace glint {
@@ -38,21 +41,10 @@ struct Rendered {
   Eigen::Vector3d Center() const { return BoundingBox(seed).center(); }
 };
 
-SyntheticOptions Small(const std::string& kind, int lights) {
-  SyntheticOptions options;
-  options.scene = "ellipsoid";
-  options.views = 16;
-  options.width = 320;
-  options.height = 240;
-  options.light_kind = kind;
-  options.lights = lights;
-  return options;
-}
-
 class FindLightsOf : public ::testing::TestWithParam<std::pair<const char*, int>> {};
 
 TEST_P(FindLightsOf, TheRightNumberAndKindAndPlace) {
-  const Rendered r(Small(GetParam().first, GetParam().second));
+  const Rendered r(testing::SmallScene(GetParam().first, GetParam().second));
   FindLightsSummary summary;
   std::vector<FoundLight> found = r.Find(r.candidates, &summary);
   std::erase_if(found, [](const FoundLight& f) { return !f.determined; });
@@ -68,6 +60,8 @@ TEST_P(FindLightsOf, TheRightNumberAndKindAndPlace) {
     }
     EXPECT_LT(nearest_deg, 2);
   }
+  EXPECT_EQ(summary.groups.size(), 1u) << summary.BriefReport();
+  EXPECT_TRUE(summary.mirror_like.empty()) << summary.mirror_like;
   EXPECT_TRUE(Contradictions(truth, found, r.scene.views, r.Center()).empty());
 }
 
@@ -77,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, FindLightsOf,
                          [](const auto& kind) { return kind.param.first; });
 
 TEST(FindLights, NoneOneAndAllOnOneSpotDetermineNothing) {
-  const Rendered r(Small("distant", 1));
+  const Rendered r(testing::SmallScene("distant", 1));
   EXPECT_TRUE(r.Find({}).empty());
   const auto determined = [&](const std::vector<Highlight>& from) {
     const auto found = r.Find(from);
@@ -90,8 +84,56 @@ TEST(FindLights, NoneOneAndAllOnOneSpotDetermineNothing) {
   EXPECT_EQ(determined(std::vector<Highlight>(8, r.candidates[0])), 0);
 }
 
+// A chrome object in a room full of bright spots.
+std::vector<cv::Mat> InAMirror(const SyntheticScene& scene) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<Eigen::Vector3d> spots;
+  for (int i = 0; i < 80; ++i)
+    spots.push_back(Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized());
+  const Scene views = MakeScene(scene.model);
+  std::vector<cv::Mat> images;
+  for (const View& view : views.views) {
+    cv::Mat& image = images.emplace_back(scene.options.height, scene.options.width, CV_8UC3, cv::Scalar::all(20));
+    for (int y = 0; y < image.rows; ++y)
+      for (int x = 0; x < image.cols; ++x) {
+        const auto ray = view.RayThrough({x + 0.5, y + 0.5});
+        const auto hit = TraceRay(*scene.shape, view.Center(), *ray, 0, 1e3);
+        if (!hit) continue;
+        const Eigen::Vector3d mirrored = *ray - 2 * ray->dot(hit->normal) * hit->normal;
+        double value = 40;
+        for (const Eigen::Vector3d& spot : spots) value += 200 * std::exp(300 * (spot.dot(mirrored) - 1));
+        image.at<cv::Vec3b>(y, x) = cv::Vec3b::all(cv::saturate_cast<uint8_t>(value));
+      }
+  }
+  return images;
+}
+
+TEST(FindLights, AMirrorOfItsSurroundingsIsSaid) {
+  const SyntheticScene scene = SynthesizeScene(testing::SmallScene("distant", 1));
+  const std::vector<cv::Mat> images = InAMirror(scene);
+  FindLightsSummary summary;
+  FindLights(MakeScene(scene.model), MemoryImages(images), TrueMesh(scene, 40), {}, {}, testing::Candidates(images),
+             &summary);
+  EXPECT_THAT(summary.mirror_like, HasSubstr("mirrors its surroundings")) << summary.BriefReport();
+}
+
+TEST(FindLights, AnExtendedLampIsSaidWithItsSize) {
+  for (const double size_deg : {0.0, 20.0}) {
+    SyntheticOptions options = testing::SmallScene("distant", 1);
+    options.roughness = size_deg > 0 ? 0.05 : 0.12;
+    options.reflectance = size_deg > 0 ? 0.02 : 0.04;  // saturated tops do not say
+    options.light_angle_deg = size_deg;
+    const Rendered r(options);
+    const auto found = r.Find(r.candidates);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].angular_size_deg, size_deg, 7);
+    EXPECT_GT(found[0].light.sigma, 0.05 * found[0].angular_size_deg);
+  }
+}
+
 TEST(CheckLights, AWrongGivenLightIsSaid) {
-  const Rendered r(Small("distant", 1));
+  const Rendered r(testing::SmallScene("distant", 1));
   const auto found = r.Find(r.candidates);
   const Light truth = r.images.scene().lights[0];
   Light wrong = truth;
@@ -107,7 +149,7 @@ TEST(CheckLights, AWrongGivenLightIsSaid) {
 }
 
 TEST(CheckLights, ALightInsideTheObject) {
-  const Rendered r(Small("distant", 1));
+  const Rendered r(testing::SmallScene("distant", 1));
   Light light{LightType::kPoint, LightFrame::kWorld, r.Center(), 0};
   EXPECT_TRUE(InsideObject(light, r.seed));
   light.vector += Eigen::Vector3d(2, 2, 2) * Diagonal(r.seed);

@@ -44,6 +44,25 @@ class LightIo : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
+TEST_F(LightIo, KeepsInWhichImagesALightShinesAndHowLargeItIs) {
+  FoundLight found;
+  found.light.images = {"a.jpg", "b/c.png"};
+  found.angular_size_deg = 7.5;
+  WriteFoundLights(folder_ / "lights.json", {found});
+  const auto read = ReadFoundLights(folder_ / "lights.json");
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(read[0].light.images, found.light.images);
+  EXPECT_EQ(read[0].angular_size_deg, 7.5);
+  EXPECT_TRUE(ShinesIn(read[0].light, "b/c.png"));
+  EXPECT_FALSE(ShinesIn(read[0].light, "c.png"));
+  EXPECT_TRUE(ShinesIn(Light{}, "c.png"));
+  for (const char* images : {"[]", "3", "[1]"})
+    EXPECT_THAT(
+        Failure(std::string(R"({"lights":[{"type":"distant","frame":"world","direction_to_light":[0,0,1],"images":)") +
+                images + "}]}"),
+        HasSubstr("images"));
+}
+
 TEST_F(LightIo, ReadsBothTypesAndFrames) {
   const auto lights = ReadLights(Write(R"({"lights":[
       {"type":"distant","frame":"world","direction_to_light":[0,3,4]},
