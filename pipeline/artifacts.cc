@@ -76,7 +76,7 @@ Highlight FromJson(const Json& json, size_t num_views, size_t num_lights) {
   h.area_px = Number(json.at("area_px"));
   h.strength = Number(json.at("strength"));
   h.saturated_fraction = Number(json.at("saturated_fraction"));
-  h.flatness = Number(json.at("flatness"));
+  h.flatness = json.contains("flatness") ? Number(json.at("flatness")) : 0;
   h.light = static_cast<int>(Index(json.at("light"), "light", -1, num_lights));
   h.status = StatusFromName(json.at("status").get<std::string>());
   return h;
