@@ -1,24 +1,19 @@
-// The program `glint`: reads the command line, runs one command, and turns what went wrong into an exit code:
-// 0 done, 2 bad input or configuration, 3 no honest result, 1 a bug, 128 + signal when asked to stop.
+// The program `glint`: reads the command line, runs one command, and turns what went wrong into an exit code.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <exception>
-#include <filesystem>
-#include <new>
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <string_view>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "pipeline/commands/command.h"
+#include "pipeline/ending.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/terminal.h"
 
 namespace {
-
-enum ExitCode { kDone = 0, kBug = 1, kBadInput = 2, kNoResult = 3 };
 
 constexpr const char* kAbout =
     "Glint turns specular highlights in the photographs of a COLMAP project into measurements of the surface,\n"
@@ -49,12 +44,7 @@ void DeclareCommands(CLI::App& app, glint::CommandLine& line) {
   glint::AddCompareCommand(app, line);
   glint::AddInspectCommand(app, line);
   glint::AddConfigCommand(app, line);
-}
-
-// OpenCV says it in its own way.
-bool IsOutOfMemory(const std::exception& e) {
-  const auto* opencv = dynamic_cast<const cv::Exception*>(&e);
-  return dynamic_cast<const std::bad_alloc*>(&e) || (opencv && opencv->code == cv::Error::StsNoMem);
+  glint::AddCompletionCommand(app, line);
 }
 
 int RunAction(const glint::CommandLine& line) {
@@ -65,26 +55,11 @@ int RunAction(const glint::CommandLine& line) {
   try {
     line.action(terminal);
     terminal.Finish();
-    return kDone;
-  } catch (const glint::InputError& e) {
-    terminal.Error(e.what());
-    return kBadInput;
-  } catch (const glint::NoResultError& e) {
-    terminal.Error(e.what());
-    return kNoResult;
-  } catch (const glint::CancelledError&) {
-    terminal.Error("stopped on request; finished stages are kept");
-    return 128 + glint::InterruptSignal();
-  } catch (const std::filesystem::filesystem_error& e) {
-    terminal.Error(e.what());
-    return kBadInput;
-  } catch (const std::exception& e) {
-    if (IsOutOfMemory(e)) {
-      terminal.Error("out of memory: choose larger voxels or smaller images");
-      return kBadInput;
-    }
-    terminal.Error(std::string("this is a bug in Glint, please report it: ") + e.what());
-    return kBug;
+    return line.exit_code;
+  } catch (...) {
+    const glint::Ending ending = glint::EndingOf(std::current_exception());
+    if (!ending.message.empty()) terminal.Error(ending.message);
+    return ending.exit_code;
   }
 }
 
@@ -98,7 +73,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kBadInput;
+    return app.exit(e) == 0 ? glint::kDone : glint::kBadInput;
   }
   return RunAction(line);
 }

@@ -16,19 +16,34 @@ struct RunLog::File {
   }
 };
 
-RunLog::RunLog(Progress& listener) : listener_(listener) {}
+RunLog::RunLog(Progress& listener) : listener_(listener), stage_listener_(dynamic_cast<RunListener*>(&listener)) {}
 RunLog::~RunLog() = default;
 
 void RunLog::WriteTo(const std::filesystem::path& file) {
   std::lock_guard lock(mutex_);
   try {
-    file_ = std::make_unique<File>(File{
-        {"file", std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), /*truncate=*/false)}});
+    file_ = std::make_unique<File>(
+        File{{"file", std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), /*truncate=*/false)}});
   } catch (const spdlog::spdlog_ex& e) {
     throw InputError(file.string(), "", std::string("the log cannot be written: ") + e.what());
   }
   file_->logger.set_pattern("%Y-%m-%d %H:%M:%S %L %v");
   file_->logger.flush_on(spdlog::level::info);
+}
+
+void RunLog::BeginStage(std::string_view name, size_t number, size_t count) {
+  if (stage_listener_) stage_listener_->BeginStage(name, number, count);
+}
+
+void RunLog::EndStage(std::string_view name, bool reused, double seconds) {
+  {
+    std::lock_guard lock(mutex_);
+    FinishLocked();
+    if (file_)
+      file_->Write(spdlog::level::info, reused ? fmt::format("{}: taken from the earlier run", name)
+                                               : fmt::format("{}: done in {:.1f} s", name, seconds));
+  }
+  if (stage_listener_) stage_listener_->EndStage(name, reused, seconds);
 }
 
 void RunLog::Begin(std::string_view what, size_t total) {

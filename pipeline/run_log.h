@@ -9,12 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "core/progress.h"
+#include "pipeline/run_listener.h"
 
 namespace glint {
 
-// Hands everything on to `listener`, which decides whether the run is cancelled. Thread-safe.
-class RunLog : public Progress {
+// Hands everything on to `listener`, which decides whether the run is cancelled; stages only to a RunListener.
+// Thread-safe.
+class RunLog : public RunListener {
  public:
   explicit RunLog(Progress& listener);
   ~RunLog() override;
@@ -22,6 +23,8 @@ class RunLog : public Progress {
   // From here on every message also goes, with the time, to `file`. Throws InputError if it cannot be opened.
   void WriteTo(const std::filesystem::path& file);
 
+  void BeginStage(std::string_view name, size_t number, size_t count) override;
+  void EndStage(std::string_view name, bool reused, double seconds) override;
   void Begin(std::string_view what, size_t total) override;
   void Advance(size_t steps = 1) override;
   void Info(std::string_view message) override;
@@ -41,7 +44,8 @@ class RunLog : public Progress {
 
   mutable std::mutex mutex_;
   Progress& listener_;
-  std::unique_ptr<File> file_;  // none until WriteTo()
+  RunListener* const stage_listener_;  // the same, if it wants to know of stages
+  std::unique_ptr<File> file_;         // none until WriteTo()
   std::string unit_;
   size_t total_ = 0;
   std::chrono::steady_clock::time_point began_;

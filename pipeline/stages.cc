@@ -81,6 +81,7 @@ void Stages::Recall(const PlannedStage& stage, const StageRecord& record, RunSum
   for (const std::string& warning : record.warnings) log_.Warn(warning);
   summary.notes.insert(summary.notes.end(), record.notes.begin(), record.notes.end());
   summary.times.push_back({Name(stage), record.seconds, true});
+  log_.EndStage(Name(stage), true, record.seconds);
 }
 
 void Stages::TakeAsItIs(const PlannedStage& stage, RunSummary& summary) {
@@ -113,6 +114,7 @@ void Stages::Make(const PlannedStage& stage, const Ingredients& now, RunSummary&
   record.summary = SummaryPart(stage.stage, summary);
   WriteStageRecord(RecordPath(stage), record);
   hashes_.Save();
+  log_.EndStage(Name(stage), false, seconds.count());
 }
 
 StagesOutcome Stages::Run(const std::vector<PlannedStage>& stages, const StageChoice& choice, RunSummary& summary) {
@@ -122,6 +124,7 @@ StagesOutcome Stages::Run(const std::vector<PlannedStage>& stages, const StageCh
   for (const PlannedStage& stage : stages) {
     log_.ThrowIfCancelled();
     if (choice.until && stage.stage > *choice.until) return StagesOutcome::kStopped;
+    log_.BeginStage(Name(stage), static_cast<size_t>(&stage - stages.data()) + 1, stages.size());
     if (choice.from && stage.stage < *choice.from) {
       TakeAsItIs(stage, summary);
     } else {
@@ -129,7 +132,6 @@ StagesOutcome Stages::Run(const std::vector<PlannedStage>& stages, const StageCh
       const std::optional<StageRecord> record = ReadStageRecord(RecordPath(stage));
       const std::string why = choice.from ? "as --from or --force asks" : WhyNotDone(stage, record, now);
       if (why.empty()) {
-        log_.Info(fmt::format("{}: taken from the earlier run", Name(stage)));
         Recall(stage, *record, summary);
       } else {
         if (record) log_.Info(fmt::format("{}: done anew: {}", Name(stage), why));

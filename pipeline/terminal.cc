@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace glint {
 namespace {
 
 constexpr int kBarCells = 30;
+constexpr size_t kDefaultColumns = 79;
 constexpr std::chrono::milliseconds kRedrawEvery(100);
 constexpr std::chrono::seconds kPlainLineEvery(15);
 
@@ -48,6 +50,19 @@ Terminal::Terminal(Verbosity verbosity)
 }
 
 Terminal::~Terminal() { ClearBar(); }
+
+void Terminal::BeginStage(std::string_view name, size_t number, size_t count) {
+  std::lock_guard lock(mutex_);
+  FinishLocked();
+  stage_ = fmt::format("[{}/{} {}] ", number, count, name);
+}
+
+void Terminal::EndStage(std::string_view name, bool reused, double) {
+  std::lock_guard lock(mutex_);
+  FinishLocked();
+  if (reused) screen_->Log(spdlog::level::info, fmt::format("{}: taken from the earlier run", name));
+  stage_.clear();
+}
 
 void Terminal::Begin(std::string_view what, size_t total) {
   std::lock_guard lock(mutex_);
@@ -108,18 +123,23 @@ void Terminal::FinishLocked() {
   unit_.clear();
 }
 
-void Terminal::Draw() {
-  std::string line = unit_;
-  if (total_ > 0) {
-    line += fmt::format(" {} {}/{}", Bar(done_, total_), std::min(done_, total_), total_);
-    const double elapsed = Seconds(Clock::now() - began_);
-    if (done_ > 0 && done_ < total_ && elapsed > 2)
-      line += fmt::format(", {} left",
-                          Duration(elapsed * static_cast<double>(total_ - done_) / static_cast<double>(done_)));
-  } else {
+// As wide as the screen at most: a line that wraps cannot be drawn over.
+std::string Terminal::BarLine() const {
+  std::string line = stage_ + unit_;
+  if (total_ == 0) {
     line += " ...";
+  } else {
+    line += fmt::format(" {} {}/{}", Bar(done_, total_), std::min(done_, total_), total_);
+    if (const auto left = SecondsLeft(done_, total_, Seconds(Clock::now() - began_)))
+      line += fmt::format(", {} left", Duration(*left));
   }
-  fmt::print(stderr, "\r\x1b[K{}", line);
+  winsize size = {};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return line.substr(0, known ? size.ws_col - 1u : kDefaultColumns);
+}
+
+void Terminal::Draw() {
+  fmt::print(stderr, "\r\x1b[K{}", BarLine());
   std::fflush(stderr);
   bar_on_screen_ = true;
 }

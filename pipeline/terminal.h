@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/progress.h"
+#include "pipeline/run_listener.h"
 
 namespace glint {
 
@@ -16,11 +16,13 @@ enum class Verbosity { kQuiet, kNormal };
 
 // Writes to standard error: on a terminal a bar for the running unit of work, plain lines elsewhere; kQuiet leaves
 // only warnings. Cancelled() follows InterruptSignal(). Thread-safe.
-class Terminal : public Progress {
+class Terminal : public RunListener {
  public:
   explicit Terminal(Verbosity verbosity);
   ~Terminal() override;
 
+  void BeginStage(std::string_view name, size_t number, size_t count) override;
+  void EndStage(std::string_view name, bool reused, double seconds) override;
   void Begin(std::string_view what, size_t total) override;
   void Advance(size_t steps = 1) override;
   void Info(std::string_view message) override;
@@ -36,6 +38,7 @@ class Terminal : public Progress {
   struct Screen;
 
   void FinishLocked();
+  std::string BarLine() const;
   void Draw();
   void ClearBar();
 
@@ -44,6 +47,7 @@ class Terminal : public Progress {
   bool quiet_;
   bool draw_bars_;
   bool bar_on_screen_ = false;
+  std::string stage_;  // "[2/6 detect] "; empty outside of a run
   std::string unit_;
   size_t total_ = 0;
   size_t done_ = 0;

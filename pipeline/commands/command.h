@@ -18,10 +18,12 @@ struct CommandLine {
   bool quiet = false;
   std::string text;  // as typed
   std::function<void(Terminal&)> action;
+  int exit_code = 0;  // of an action that has an ending of its own and throws nothing
 };
 
 // Each declares one command: its arguments, its help, and its action.
 void AddCompareCommand(CLI::App& app, CommandLine& line);
+void AddCompletionCommand(CLI::App& app, CommandLine& line);
 void AddConfigCommand(CLI::App& app, CommandLine& line);
 void AddDetectCommand(CLI::App& app, CommandLine& line);
 void AddInspectCommand(CLI::App& app, CommandLine& line);

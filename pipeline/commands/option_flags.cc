@@ -1,6 +1,7 @@
 #include "pipeline/commands/option_flags.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -18,6 +19,7 @@ std::string FlagName(std::string name) {
 std::string TypeName(const OptionItem& item) {
   if (std::holds_alternative<double*>(item.value)) return "NUMBER";
   if (std::holds_alternative<int*>(item.value)) return "INTEGER";
+  if (!item.choices.empty()) return fmt::format("{{{}}}", fmt::join(item.choices, ","));
   return std::holds_alternative<std::string*>(item.value) ? "TEXT" : "[NUMBERS]";
 }
 

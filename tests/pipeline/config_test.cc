@@ -3,10 +3,14 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/error.h"
 #include "pipeline/config_file.h"
+#include "pipeline/config_schema.h"
+#include "pipeline/option_table.h"
 
 namespace glint {
 namespace {
@@ -172,6 +176,71 @@ TEST(Config, RangeViolationsNameWhereTheValueCameFrom) {
     EXPECT_THAT(e.what(), AllOf(HasSubstr("--set: output.memory_fraction = 7: must lie in [0.01, 1]"),
                                 HasSubstr("--set: output.overlay_max_side_px = 3"), Not(HasSubstr("overlays"))));
   }
+}
+
+// Where a dotted path is in the schema; null: nowhere.
+const nlohmann::json* InSchema(const nlohmann::json& schema, const std::string& path) {
+  const nlohmann::json* place = &schema;
+  std::istringstream parts(path);
+  for (std::string part; std::getline(parts, part, '.');) {
+    const auto found = (*place)["properties"].find(part);
+    if (found == (*place)["properties"].end()) return nullptr;
+    place = &*found;
+  }
+  return place;
+}
+
+TEST(Schema, HasEveryOptionWithItsDeclaration) {
+  Config config;
+  const OptionTable table(config);
+  const nlohmann::json schema = nlohmann::json::parse(JsonSchema(table));
+  EXPECT_EQ(schema["additionalProperties"], false);
+  for (const OptionItem& item : table.items()) {
+    if (item.kind == OptionItem::Kind::kEndSection) continue;
+    const nlohmann::json* place = InSchema(schema, item.path);
+    ASSERT_NE(place, nullptr) << item.path;
+    EXPECT_THAT((*place)["description"].get<std::string>(), HasSubstr(item.help));
+    EXPECT_EQ(place->contains("default"), item.kind == OptionItem::Kind::kField) << item.path;
+  }
+  const nlohmann::json& levels = *InSchema(schema, "refine.levels");
+  EXPECT_EQ(levels["type"], "integer");
+  EXPECT_EQ(levels["minimum"], 1);
+  EXPECT_EQ(levels["maximum"], 8);
+  EXPECT_EQ(levels["default"], 3);
+  EXPECT_THAT((*InSchema(schema, "lights.kinds"))["enum"], ElementsAre("any", "distant", "point"));
+  EXPECT_EQ((*InSchema(schema, "seed.object.box"))["items"]["type"], "number");
+}
+
+TEST(Schema, TheFileThatEditorsReadIsUpToDate) {
+  Config config;
+  std::ifstream in(fs::path(GLINT_SOURCE_DIR) / "configs/schema.json");
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  EXPECT_TRUE(text == JsonSchema(OptionTable(config))) << "glint config --schema > configs/schema.json";
+}
+
+TEST(Configs, EveryOneIsValidCommentedAndSetsOnlyWhatItsUseNeeds) {
+  size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(GLINT_SOURCE_DIR) / "configs")) {
+    if (entry.path().extension() != ".yaml" || entry.path().filename() == "default.yaml") continue;
+    ++count;
+    SCOPED_TRACE(entry.path().filename().string());
+    std::ifstream in(entry.path());
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    EXPECT_TRUE(text.starts_with("# yaml-language-server: $schema=schema.json\n# "));
+    EXPECT_THAT(text, HasSubstr("--config configs/" + entry.path().filename().string()));
+    Config config;
+    ASSERT_NO_THROW(config = ResolveConfig(entry.path(), {}));
+    Config defaults, read;
+    const OptionTable table(read), default_table(defaults);
+    ConfigProblems problems;
+    ReadYamlFile(entry.path(), table, problems);
+    EXPECT_THAT(problems.messages, IsEmpty());
+    EXPECT_FALSE(problems.origin.empty());
+    for (const auto& [path, where] : problems.origin)
+      EXPECT_NE(FormatValue(*table.FindField(path)), FormatValue(*default_table.FindField(path)))
+          << path << " is the default anyway";
+  }
+  EXPECT_EQ(count, 8u);
 }
 
 }  // namespace
