@@ -7,17 +7,23 @@
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
-#include "pipeline/child_run.h"
+#include "colmap/child_process.h"
+#include "core/error.h"
 #include "pipeline/ending.h"
+#include "pipeline/interrupt.h"
 
 namespace glint {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<std::string> ArgumentsFor(const BatchProject& project, const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"run", project.project.string(), "--out", project.out.string(), "--json"};
+// The program that we are, as a program of its own.
+std::vector<std::string> CommandFor(const BatchProject& project, const std::vector<std::string>& more) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  std::vector<std::string> arguments = {program, "run", project.project.string(), "--out", project.out.string(),
+                                        "--json"};
   const auto add = [&](const char* flag, const std::filesystem::path& path) {
     if (!path.empty()) arguments.insert(arguments.end(), {flag, path.string()});
   };
@@ -37,7 +43,7 @@ class Follower {
   Follower(BatchOutcome& outcome, bool events, RunListener& listener)
       : outcome_(outcome), events_(events), listener_(listener) {}
 
-  void Take(const std::string& line) {
+  void Take(std::string_view line) {
     Json event = Json::parse(line, nullptr, /*allow_exceptions=*/false);
     if (!event.is_object()) return;
     const std::string kind = event.value("event", "");
@@ -88,11 +94,16 @@ void RunOne(const BatchProject& project, const std::vector<std::string>& more, b
             BatchOutcome& outcome) {
   const auto start = std::chrono::steady_clock::now();
   Follower follower(outcome, events, listener);
-  outcome.exit_code = RunChild(
-      ArgumentsFor(project, more), [&](const std::string& line) { follower.Take(line); },
-      [&] { return listener.Cancelled(); });
+  try {
+    const ChildResult result = RunChild(
+        CommandFor(project, more), {}, [&](std::string_view line) { follower.Take(line); }, listener);
+    outcome.exit_code = result.end == ChildEnd::kExited ? result.code : 128 + result.code;
+    if (outcome.outcome.empty()) outcome.outcome = "ended without a word; its log.txt may say more";
+  } catch (const CancelledError&) {
+    outcome.exit_code = 128 + InterruptSignal();
+    outcome.outcome = "stopped on request";
+  }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (outcome.outcome.empty()) outcome.outcome = fmt::format("ended with exit code {}", outcome.exit_code);
 }
 
 std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }

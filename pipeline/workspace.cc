@@ -95,7 +95,7 @@ Publication::Publication(const Workspace& out) : folder_(out.StagedFiles()) {
 }
 
 fs::path Publication::For(const fs::path& file) {
-  files_.emplace_back(folder_ / (std::to_string(files_.size()) + file.extension().string()), file);
+  files_.emplace_back(folder_ / fmt::format("{}-{}", files_.size(), file.filename().string()), file);
   return files_.back().first;
 }
 

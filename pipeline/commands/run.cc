@@ -102,9 +102,10 @@ void DeclareProjectOptions(CLI::App& command, Arguments& arguments) {
         command.add_option("--images", run.images, "Folder of the images, if not in the project"),
         command.add_option("--masks", run.masks, "Folder of masks (IMAGE.png, 0 is ignored), if not in the project")})
     option->excludes(batch);
-  command.add_option_function<std::string>(
-      "--box", [&arguments](const std::string& box) { arguments.settings.push_back("seed.object.box=" + box); },
-      "The object is in this box of the project's frame, --box=X,Y,Z,SX,SY,SZ: centre and size")
+  command
+      .add_option_function<std::string>(
+          "--box", [&arguments](const std::string& box) { arguments.settings.push_back("seed.object.box=" + box); },
+          "The object is in this box of the project's frame, --box=X,Y,Z,SX,SY,SZ: centre and size")
       ->excludes(batch);
 }
 

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "pipeline/run.h"
-#include "tests/pipeline/program.h"
+#include "tests/pipeline/small_scene.h"
 
 namespace glint {
 namespace {
@@ -23,23 +23,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::json;
 
-class FlowTest : public ProgramTest {
+class FlowTest : public SmallScene {
  protected:
-  FlowTest() {
-    const ProgramResult synth =
-        RunGlint({"synth", "sphere", "-o", Path("p"), "--views", "8", "--size", "160x120", "-q"});
-    EXPECT_EQ(synth.exit_code, 0) << synth.err;
-    Write("c.yaml", "refine:\n  voxel_rel: 0.03\n  levels: 1\n");
-  }
-  ProgramResult Run(const std::vector<std::string>& more, const std::string& prefix = "") const {
-    std::vector<std::string> arguments = {"run",      Path("p"),
-                                          "-o",       Path("out"),
-                                          "--mesh",   Path("p/truth/mesh.ply"),
-                                          "--lights", Path("p/truth/lights.json"),
-                                          "--config", Path("c.yaml")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return RunGlint(arguments, prefix);
-  }
   static std::vector<Json> Events(const std::string& text) {
     std::vector<Json> events;
     std::istringstream lines(text);
@@ -49,7 +34,7 @@ class FlowTest : public ProgramTest {
 };
 
 TEST_F(FlowTest, EventsForOtherPrograms) {
-  const ProgramResult result = Run({"--json"});
+  const ProgramResult result = Run("out", {"--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
   const std::vector<Json> events = Events(result.out);
@@ -70,8 +55,8 @@ TEST_F(FlowTest, EventsForOtherPrograms) {
   EXPECT_THAT(begun, ElementsAreArray(kRunStageNames.begin(), kRunStageNames.end()));
   EXPECT_EQ(ended, begun);
 
-  EXPECT_EQ(Events(Run({"--json"}).out).back()["outcome"], "nothing to do");
-  const ProgramResult bad = Run({"--json", "--set", "refine.levels=0"});
+  EXPECT_EQ(Events(Run("out", {"--json"}).out).back()["outcome"], "nothing to do");
+  const ProgramResult bad = Run("out", {"--json", "--set", "refine.levels=0"});
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_EQ(Events(bad.out).back()["exit_code"], 2);
   EXPECT_THAT(Events(bad.out).back()["message"].get<std::string>(), HasSubstr("refine.levels = 0"));
@@ -101,12 +86,12 @@ std::string OnTerminal(std::vector<std::string> arguments, unsigned short column
 }
 
 TEST_F(FlowTest, BarsOnATerminalPlainLinesInAPipeNothingIfQuiet) {
-  const ProgramResult piped = Run({"--until", "detect"});
+  const ProgramResult piped = Run("out", {"--until", "detect"});
   EXPECT_THAT(piped.err, AllOf(HasSubstr("detect highlights (8): "), Not(HasSubstr("\r")), Not(HasSubstr("\x1b"))));
-  EXPECT_EQ(Run({"--until", "detect", "--force", "-q"}).err, "");
+  EXPECT_EQ(Run("out", {"--until", "detect", "--force", "-q"}).err, "");
 
-  const std::string drawn = OnTerminal({"run", Path("p"), "-o", Path("tty"), "--mesh", Path("p/truth/mesh.ply"),
-                                        "--lights", Path("p/truth/lights.json"), "--config", Path("c.yaml")},
+  const std::string drawn = OnTerminal({"run", Path("p"), "-o", Path("tty"), "--mesh", Path("ball.off"), "--lights",
+                                        Path("p/truth/lights.json"), "--config", Path("c.yaml")},
                                        50);
   EXPECT_THAT(drawn, AllOf(HasSubstr("[2/6 detect] detect highlights [##"), HasSubstr("[5/6 refine]")));
   std::istringstream pieces(drawn);
@@ -122,11 +107,11 @@ TEST_F(BatchTest, AProjectThatFailsStopsNoOther) {
   Write("light.yaml", "output:\n  overlays: false\n");
   Write("batch.yaml",
         "out: results\nlights: p/truth/lights.json\nset: {refine.voxel_rel: 0.03, refine.levels: 1}\nprojects:\n"
-        "  - {project: p, name: first, mesh: p/truth/mesh.ply}\n"
+        "  - {project: p, name: first, mesh: ball.off}\n"
         "  - nowhere\n"
         "  - {project: p, name: wrong, set: {refine.levels: 0}}\n"
-        "  - {project: p, name: dark, mesh: p/truth/mesh.ply, set: {detect.min_strength: 1}}\n"
-        "  - {project: p, name: last, mesh: p/truth/mesh.ply, config: light.yaml}\n");
+        "  - {project: p, name: dark, mesh: ball.off, set: {detect.min_strength: 1}}\n"
+        "  - {project: p, name: last, mesh: ball.off, config: light.yaml}\n");
   const ProgramResult result = RunGlint({"run", "--batch", Path("batch.yaml")});
   EXPECT_EQ(result.exit_code, 2) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("2 of 5 done"), HasSubstr("refine.levels = 0"),
