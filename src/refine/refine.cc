@@ -128,10 +128,12 @@ class Refiner {
     RefineResult result;
     summary_.num_highlights = static_cast<int>(input_.highlights.size());
     summary_.num_points = static_cast<int>(points_.size());
-    progress_.Begin("refine", static_cast<size_t>(options_.levels * options_.max_iterations));
+    size_t steps = 0;
+    for (int level = 0; level < options_.levels; ++level) steps += StepsOfIteration(level) * MaxIterations();
+    progress_.Begin("refine", steps);
     for (int level = 0; level < options_.levels; ++level) {
       const double voxel = options_.voxel_rel * std::pow(2.0, options_.levels - 1 - level);
-      const bool finished = RunLevel(voxel);
+      const bool finished = RunLevel(voxel, StepsOfIteration(level));
       if (level + 1 == options_.levels) summary_.converged = finished;
     }
     Finish(result);
@@ -140,7 +142,10 @@ class Refiner {
 
  private:
   void MakePoints();
-  bool RunLevel(double voxel);
+  // Four times the surface takes four times as long: the steps of progress are weighed so.
+  static size_t StepsOfIteration(int level) { return size_t{1} << (2 * level); }
+  size_t MaxIterations() const { return static_cast<size_t>(options_.max_iterations); }
+  bool RunLevel(double voxel, size_t progress_steps);
   LevelSet Step(const LevelSet& seed_field, bool undecided, StepSummary& summary);
   void TakeSurface(const LevelSet& stepped, const SdfOptions& sdf);
   double UpdateContacts(const LevelSet& field, IterationSummary& iteration);
@@ -321,7 +326,7 @@ void Refiner::TakeSurface(const LevelSet& stepped, const SdfOptions& sdf) {
                                                            : MeshToLevelSet(surface_, stepped.voxel_size(), sdf);
 }
 
-bool Refiner::RunLevel(double voxel) {
+bool Refiner::RunLevel(double voxel, size_t progress_steps) {
   SdfOptions sdf;
   sdf.half_width_voxels = std::max(8.0, 2 * options_.half_width_voxels);
   const LevelSet seed_field = MeshToLevelSet(seed_, voxel, sdf);
@@ -340,10 +345,12 @@ bool Refiner::RunLevel(double voxel) {
     TakeSurface(stepped, sdf);
     iteration.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     summary_.iterations.push_back(iteration);
-    progress_.Advance();
+    progress_.Advance(progress_steps);
     // The very first iteration moves the contacts off the seed: what it reports says nothing about the next.
     const bool first = summary_.iterations.size() == 1;
-    if (!first && iteration.contact_motion_voxels < options_.min_motion_voxels) return true;
+    if (first || iteration.contact_motion_voxels >= options_.min_motion_voxels) continue;
+    progress_.Advance(progress_steps * (MaxIterations() - 1 - static_cast<size_t>(k)));
+    return true;
   }
   return false;
 }
