@@ -69,7 +69,9 @@ class BadInput : public ProgramTest {
 fs::path* BadInput::sound_ = nullptr;
 
 TEST_F(BadInput, MissingProject) {
-  fs::remove_all(folder_ / "p/sparse");
+  // No model, and no photographs to make one from.
+  for (const char* name : {"p/sparse", "p/images", "p/truth/highlights", "p/truth/masks"})
+    fs::remove_all(folder_ / name);
   ExpectRefused(HasSubstr(Path("p")));
   fs::remove(folder_ / "p/truth/lights.json");
   ExpectRefused(HasSubstr("lights.json"));
