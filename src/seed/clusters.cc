@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kNeighbors = 12;    // that a point may be linked to
 constexpr int kSpacing = 4;       // which neighbour's distance is the spacing
-constexpr double kReach = 4;      // spacings
+constexpr double kReach = 2;      // spacings
+constexpr double kMost = 0.8;     // of the points: a largest cluster with fewer is but a part of the object
 constexpr double kOutside = 1.3;  // times the radius of the largest cluster
 constexpr size_t kGrain = 64;
 
@@ -71,7 +72,7 @@ std::vector<uint8_t> LieApart(const std::vector<Eigen::Vector3d>& points) {
   std::vector<double> radii;
   for (size_t i = 0; i < points.size(); ++i)
     if (cluster[i] == 0) radii.push_back((points[i] - center).norm());
-  if (radii.empty()) return apart;
+  if (radii.empty() || static_cast<double>(radii.size()) < kMost * static_cast<double>(points.size())) return apart;
   const auto most = radii.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(radii.size() - 1));
   std::nth_element(radii.begin(), most, radii.end());
   std::map<int, double> nearest;  // of each cluster

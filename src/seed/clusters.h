@@ -11,8 +11,8 @@ namespace glint {
 // times as far apart as either has its fourth neighbour.
 std::vector<int> DenseClusters(const std::vector<Eigen::Vector3d>& points, double reach);
 
-// Points of the smaller clusters that lie farther out than nearly all of the largest: what was seen behind an object,
-// through its handle or beside it.
+// Points of the smaller clusters that lie farther out than nearly all of the largest, if that has most of the points:
+// what was seen behind an object, through its handle or beside it.
 std::vector<uint8_t> LieApart(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "geometry/mesh_checks.h"
 #include "seed/cell_surface.h"
+#include "seed/clusters.h"
 #include "seed/convex_hull.h"
 #include "seed/min_cut.h"
 #include "seed/point_index.h"
@@ -189,6 +190,36 @@ TEST(PointIndex, FindsWhatBruteForceFinds) {
     for (int k = 0; k < 7; ++k) EXPECT_EQ(nearest[k], all[k].second);
   }
   EXPECT_EQ(PointIndex({}).Nearest(Eigen::Vector3d::Zero(), 3).size(), 0u);
+}
+
+// Points on the unit sphere, evenly.
+std::vector<Eigen::Vector3d> SpherePoints(int count) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z), a = 2.399963 * i;
+    points.emplace_back(r * std::cos(a), r * std::sin(a), z);
+  }
+  return points;
+}
+
+TEST(Clusters, WhatLiesApartIsToldFromWhatIsRare) {
+  std::vector<Eigen::Vector3d> points = SpherePoints(400);
+  for (int i = 0; i < 9; ++i) points.push_back({3 + 0.05 * (i % 3), 0.05 * i, 0.3});  // a wall behind
+  points.push_back({0, 0, 1.2});                                                      // a knob: alone but near
+  const std::vector<uint8_t> apart = LieApart(points);
+  EXPECT_EQ(std::count(apart.begin(), apart.end(), 1), 9);
+  EXPECT_EQ(apart.back(), 0);
+  EXPECT_EQ(apart[400], 1);
+}
+
+TEST(Clusters, TwoHalvesOfOneObjectStay) {
+  std::vector<Eigen::Vector3d> points = SpherePoints(100);
+  for (const Eigen::Vector3d& x : SpherePoints(60)) points.push_back(x + Eigen::Vector3d(6, 0, 0));
+  const std::vector<uint8_t> apart = LieApart(points);
+  EXPECT_EQ(std::count(apart.begin(), apart.end(), 1), 0);
+  const std::vector<int> cluster = DenseClusters(points, 2);
+  EXPECT_EQ(std::count(cluster.begin(), cluster.end(), 0), 100);
+  EXPECT_EQ(*std::max_element(cluster.begin(), cluster.end()), 1);
 }
 
 TEST(ConvexHull, OfAGridIsItsCorners) {
