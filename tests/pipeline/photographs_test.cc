@@ -1,0 +1,197 @@
+// The main job from photographs or a film, through the program: with a script in place of COLMAP, and once with the
+// real one.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "io/mesh_io.h"
+#include "pipeline/image_stages.h"
+#include "tests/colmap/fake_colmap.h"
+#include "tests/pipeline/program.h"
+#include "tests/pipeline/textured_box.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using testing_support::FakeColmap;
+
+bool HasColmap() { return std::system("command -v colmap > /dev/null 2>&1") == 0; }
+
+class FromPhotographs : public ProgramTest {
+ protected:
+  static void SetUpTestSuite() {
+    project_ = new fs::path(fs::path(::testing::TempDir()) / "glint_photographs_project");
+    fs::remove_all(*project_);
+    const ProgramResult result =
+        RunGlint({"synth", "ellipsoid", "-o", project_->string(), "--views", "12", "--size", "320x240", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+  static void TearDownTestSuite() {
+    fs::remove_all(*project_);
+    delete project_;
+  }
+  FromPhotographs() : colmap_(folder_ / "bin") {
+    fs::copy(*project_ / "images", folder_ / "photographs", fs::copy_options::recursive);
+    fs::copy(*project_ / "sparse", colmap_.Model(), fs::copy_options::recursive);
+  }
+
+  ProgramResult RunOn(const std::string& what, const std::vector<std::string>& more = {},
+                      const std::string& prefix = "") const {
+    std::vector<std::string> arguments = {"run", Path(what), "-o", Path("out"), "--set", "refine.voxel_rel=0.02"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunGlint(arguments, "PATH='" + Path("bin") + "':\"$PATH\" " + prefix);
+  }
+
+  static fs::path* project_;
+  FakeColmap colmap_;
+};
+fs::path* FromPhotographs::project_ = nullptr;
+
+TEST_F(FromPhotographs, OneCommandToTheMesh) {
+  Write("photographs/cut.jpg", ReadText(*project_ / "images/view_000.jpg").substr(0, 3000));
+  const std::vector<std::string> more = {
+      "--lights", (*project_ / "truth/lights.json").string(), "--set", "output.obj=true", "--set", "output.glb=true"};
+  const ProgramResult result = RunOn("photographs", more);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("left out"), HasSubstr("cut.jpg"), HasSubstr("12 of 12 images registered")));
+  EXPECT_THAT(colmap_.Calls(), ElementsAre("feature_extractor", "exhaustive_matcher", "mapper"));
+  EXPECT_THAT(colmap_.Lines(), HasSubstr("--ImageReader.single_camera 1"));
+  const auto report = nlohmann::json::parse(ReadText(folder_ / "out/report.json"));
+  EXPECT_THAT(report.dump(), AllOf(HasSubstr("colmap features"), HasSubstr("COLMAP 3.8")));
+
+  const TriangleMesh mesh = ReadMesh(folder_ / "out/mesh.ply");
+  ASSERT_EQ(mesh.colors.size(), mesh.vertices.size());
+  EXPECT_EQ(ReadMesh(folder_ / "out/mesh.obj").colors.size(), mesh.vertices.size());
+  EXPECT_THAT(ReadText(folder_ / "out/mesh.glb").substr(0, 4), "glTF");
+  EXPECT_TRUE(fs::exists(folder_ / "out/highlight_masks/view_003.jpg.png"));
+
+  EXPECT_EQ(RunOn("photographs", more).exit_code, 0);
+  EXPECT_THAT(colmap_.Calls(), IsEmpty()) << "what is finished is not done again";
+}
+
+TEST_F(FromPhotographs, MissingColmapIsNamedWithHowToInstallIt) {
+  const ProgramResult result = RunGlint({"run", Path("photographs"), "-o", Path("out")}, "PATH=/nowhere ");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("apt-get install colmap"), Not(HasSubstr("bug"))));
+  ExpectNoResults(folder_ / "out");
+}
+
+TEST_F(FromPhotographs, FailingColmapIsQuoted) {
+  colmap_.Write("exhaustive_matcher", "echo 'ERROR: out of luck' >&2; exit 9");
+  const ProgramResult result = RunOn("photographs");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("exhaustive_matcher"), HasSubstr("exit code 9"), HasSubstr("out of luck"),
+                                HasSubstr("log.txt")));
+  ExpectNoResults(folder_ / "out");
+}
+
+TEST_F(FromPhotographs, TooFewRegisteredComesWithAdvice) {
+  fs::remove_all(colmap_.Model() / "0");
+  const ProgramResult result = RunOn("photographs");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("0 of 12"), HasSubstr("90 features"), HasSubstr("turntable")));
+}
+
+TEST_F(FromPhotographs, CtrlCEndsColmapAndKeepsWhatIsFinished) {
+  colmap_.Write("mapper", "sleep 60 & echo $! > " + Path("pid") + "; wait");
+  const ProgramResult result = RunOn("photographs", {}, "timeout --preserve-status -s INT 3 ");
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_FALSE(testing_support::Runs(folder_ / "pid"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/colmap/matches.done"));
+}
+
+TEST_F(FromPhotographs, WhatIsNeitherProjectNorPhotographsNorFilm) {
+  Write("notes.txt", "not a film");
+  fs::create_directories(folder_ / "empty");
+  EXPECT_THAT(RunOn("notes.txt").err, AllOf(HasSubstr("notes.txt"), HasSubstr("film")));
+  EXPECT_THAT(RunOn("empty").err, AllOf(HasSubstr("empty"), HasSubstr("COLMAP project")));
+  Write("phone/1.heic", "x");
+  const ProgramResult result = RunOn("phone");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr(".heic"), HasSubstr("JPEG")));
+}
+
+TEST_F(FromPhotographs, FilmGivesFrames) {
+  cv::Mat wide(240, 700, CV_8UC3), small(60, 175, CV_8UC3);
+  cv::theRNG().state = 1;
+  cv::randu(small, 0, 255);
+  cv::resize(small, wide, wide.size(), 0, 0, cv::INTER_CUBIC);
+  {
+    cv::VideoWriter film(Path("film.avi"), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25, {320, 240});
+    for (int i = 0; i < 60; ++i) film.write(wide(cv::Rect(6 * i, 0, 320, 240)));
+  }
+  fs::remove_all(colmap_.Model() / "0");
+  EXPECT_EQ(RunOn("film.avi").exit_code, 3);
+  const fs::path images = folder_ / "out/colmap/images";
+  EXPECT_GE(std::distance(fs::directory_iterator(images), {}), 10);
+  EXPECT_THAT(ReadText(folder_ / "out/colmap/photographs.txt"), HasSubstr("frame_0000"));
+  const auto written = fs::last_write_time(*fs::directory_iterator(images));
+  EXPECT_EQ(RunOn("film.avi").exit_code, 3);
+  EXPECT_EQ(fs::last_write_time(*fs::directory_iterator(images)), written) << "the frames are taken once";
+}
+
+// What COLMAP does with our masks: no features where they are 0, that is on highlights.
+TEST_F(FromPhotographs, ColmapIgnoresFeaturesOnHighlights) {
+  if (!HasColmap()) GTEST_SKIP() << "no colmap program";
+  cv::Mat image(240, 320, CV_8UC3, cv::Scalar::all(90));
+  cv::theRNG().state = 1;
+  cv::Mat spots(60, 60, CV_8UC3);
+  cv::randu(spots, 0, 255);
+  cv::resize(spots(cv::Rect(0, 0, 20, 20)), image(cv::Rect(40, 80, 80, 80)), {80, 80}, 0, 0, cv::INTER_CUBIC);
+  Scene scene;
+  std::vector<Highlight> highlights;
+  for (uint32_t k = 0; k < 2; ++k) {
+    View& view = scene.views.emplace_back();
+    view.name = k == 0 ? "clear.png" : "with/glint.png";
+    view.camera = {1, CameraModel::kPinhole, 320, 240, {300, 300, 160, 120}};
+    fs::create_directories((folder_ / "film" / view.name).parent_path());
+    cv::imwrite((folder_ / "film" / view.name).string(), image);
+  }
+  Highlight glint;
+  glint.view = 1;
+  glint.px = {80, 120};
+  glint.covariance_px = Eigen::Matrix2d::Identity();
+  glint.moments_px = 1600 * Eigen::Matrix2d::Identity();
+  highlights.push_back(glint);
+  WriteHighlightMasks(scene, highlights, folder_ / "masks", Progress::Silent());
+  const std::string command = "QT_QPA_PLATFORM=offscreen colmap feature_extractor --database_path '" + Path("db") +
+                              "' --image_path '" + Path("film") + "' --ImageReader.mask_path '" + Path("masks") +
+                              "' --SiftExtraction.use_gpu 0 > '" + Path("said") + "' 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << ReadText(folder_ / "said");
+  const std::string said = ReadText(folder_ / "said");
+  const auto features = [&](const std::string& name) {
+    const size_t at = said.find("Features:", said.find(name));
+    return std::stoi(said.substr(at + 9));
+  };
+  EXPECT_GT(features("clear.png"), 20) << said;
+  EXPECT_EQ(features("with/glint.png"), 0) << said;
+}
+
+TEST_F(FromPhotographs, FilmThroughTheRealColmap) {
+  if (!HasColmap()) GTEST_SKIP() << "no colmap program";
+  const TexturedBox box;
+  {
+    cv::VideoWriter film(Path("film.avi"), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25, {480, 360});
+    for (int i = 0; i < 40; ++i) film.write(box.Photograph(3 * i, 480, 360));
+  }
+  const ProgramResult result =
+      RunGlint({"run", Path("film.avi"), "-o", Path("out"), "--set", "photos.video.max_frames=12", "--set",
+                "refine.use_highlights=false", "--set", "refine.voxel_rel=0.03"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("12 of 12 images registered"));
+  EXPECT_FALSE(ReadMesh(folder_ / "out/mesh.ply").empty());
+}
+
+}  // namespace
+}  // namespace glint
