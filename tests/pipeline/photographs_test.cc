@@ -53,6 +53,23 @@ class FromPhotographs : public ProgramTest {
     return RunGlint(arguments, "PATH='" + Path("bin") + "':\"$PATH\" " + prefix);
   }
 
+  // COLMAP takes mesh.ply as points with normals and colours and makes the same surface of them; assimp, behind which
+  // are many programs, counts the same vertices in every format.
+  void ExpectOthersReadIt(const TriangleMesh& mesh) const {
+    if (HasColmap()) {
+      const std::string command = "QT_QPA_PLATFORM=offscreen colmap poisson_mesher --input_path '" +
+                                  Path("out/mesh.ply") + "' --output_path '" + Path("poisson.ply") +
+                                  "' --PoissonMeshing.depth 6 --PoissonMeshing.trim 0 > /dev/null 2>&1";
+      EXPECT_EQ(std::system(command.c_str()), 0);
+      EXPECT_NEAR(Diagonal(ReadMesh(Path("poisson.ply"))), Diagonal(mesh), 0.02 * Diagonal(mesh));
+    }
+    if (std::system("command -v assimp > /dev/null 2>&1") != 0) return;
+    for (const char* name : {"out/mesh.ply", "out/mesh.obj", "out/mesh.glb"}) {
+      EXPECT_EQ(std::system(("assimp info '" + Path(name) + "' > '" + Path("info") + "' 2>&1").c_str()), 0) << name;
+      EXPECT_THAT(ReadText(Path("info")), HasSubstr(" " + std::to_string(mesh.vertices.size()) + "\n")) << name;
+    }
+  }
+
   static fs::path* project_;
   FakeColmap colmap_;
 };
@@ -75,6 +92,7 @@ TEST_F(FromPhotographs, OneCommandToTheMesh) {
   EXPECT_EQ(ReadMesh(folder_ / "out/mesh.obj").colors.size(), mesh.vertices.size());
   EXPECT_THAT(ReadText(folder_ / "out/mesh.glb").substr(0, 4), "glTF");
   EXPECT_TRUE(fs::exists(folder_ / "out/highlight_masks/view_003.jpg.png"));
+  ExpectOthersReadIt(mesh);
 
   EXPECT_EQ(RunOn("photographs", more).exit_code, 0);
   EXPECT_THAT(colmap_.Calls(), IsEmpty()) << "what is finished is not done again";
