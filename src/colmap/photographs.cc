@@ -68,10 +68,16 @@ std::optional<std::pair<std::string, double>> Numbered(const std::string& name) 
   return std::pair(name.substr(0, begin), std::stod(name.substr(begin, end - begin)));
 }
 
+// What a run of ours left.
+bool HoldsResults(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_directory(folder / "stages", ignored) && fs::is_regular_file(folder / "log.txt", ignored);
+}
+
 bool LeftOut(const fs::path& folder, const fs::path& except) {
   const std::string name = folder.filename().string();
   std::error_code missing;
-  return name.starts_with(".") || name == "masks" || name == "mask" ||
+  return name.starts_with(".") || name == "masks" || name == "mask" || HoldsResults(folder) ||
          (!except.empty() && fs::equivalent(folder, except, missing));
 }
 

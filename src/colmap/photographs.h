@@ -18,7 +18,7 @@ struct Photographs {
 };
 
 // The images below `folder`, or in its sub-folder "images" (or another of the usual names) if there is none beside it;
-// but not those in hidden folders, in folders of masks, or below `except`. Their bytes are not looked at.
+// but not those in hidden folders, in folders of masks or of results, or below `except`. Their bytes are not looked at.
 Photographs FindPhotographs(const std::filesystem::path& folder, const std::filesystem::path& except = {});
 
 // True if the names count up, as a camera's files do in the order of shooting.

@@ -149,7 +149,7 @@ void Reconstruction::Require(const ChildResult& result, const std::string& comma
       why = fmt::format("was ended after {} minutes (photos.colmap.time_limit_min)", options_.time_limit_min);
   }
   throw InputError((folder_ / "log.txt").string(), "colmap " + command,
-                   why + "; what is finished is kept. It said last\n" + result.tail);
+                   why + "; what is finished is kept" + (result.tail.empty() ? "" : ". It said last\n" + result.tail));
 }
 
 void Reconstruction::Features() {

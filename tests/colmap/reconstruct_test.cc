@@ -35,8 +35,9 @@ std::vector<std::string> Numbered(int count) {
 
 TEST(Photographs, AreFoundInTheOrderOfTheirNumbers) {
   const TemporaryFolder folder;
-  for (const char* name : {"img10.JPG", "img9.jpg", "sub/übung 1.png", ".hidden.jpg", ".cache/a.jpg",
-                           "masks/img9.jpg.png", "notes.txt", "a.heic", "out/highlights/b.png"})
+  for (const char* name :
+       {"img10.JPG", "img9.jpg", "sub/übung 1.png", ".hidden.jpg", ".cache/a.jpg", "masks/img9.jpg.png", "notes.txt",
+        "a.heic", "out/highlights/b.png", "earlier/log.txt", "earlier/stages/a.json", "earlier/highlights/c.png"})
     WriteFile(folder / name, "x");
   const Photographs found = FindPhotographs(folder.path(), folder / "out");
   EXPECT_THAT(found.names, ElementsAre("img9.jpg", "img10.JPG", "sub/übung 1.png"));
