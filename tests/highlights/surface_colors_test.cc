@@ -93,13 +93,5 @@ TEST(SurfaceColors, ArePaintWhereHighlightsAreKnown) {
   EXPECT_GT(worst_blind, 50) << "without the highlights the spot is in the colours";
 }
 
-TEST(SurfaceColors, WhatNobodySeesTakesTheColourAroundIt) {
-  const PaintedSphere sphere(kTop);
-  const SurfaceColors colors = sphere.Colors(sphere.spots);
-  ASSERT_LT(colors.num_seen, sphere.mesh.vertices.size());
-  for (size_t v = 0; v < sphere.mesh.vertices.size(); ++v)
-    EXPECT_LE(Difference(colors.rgb[v], Paint(sphere.mesh.vertices[v])), 110);
-}
-
 }  // namespace
 }  // namespace glint
