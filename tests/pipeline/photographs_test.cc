@@ -1,5 +1,5 @@
-// The main job from photographs or a film, through the program: with a script in place of COLMAP, and once with the
-// real one.
+// The main job from photographs or a film, through the program, with a script in place of COLMAP; and what the real one
+// makes of our masks and meshes.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 #include "pipeline/image_stages.h"
 #include "tests/colmap/fake_colmap.h"
 #include "tests/pipeline/program.h"
-#include "tests/pipeline/textured_box.h"
 
 namespace glint {
 namespace {
@@ -194,21 +193,6 @@ TEST_F(FromPhotographs, ColmapIgnoresFeaturesOnHighlights) {
   };
   EXPECT_GT(features("clear.png"), 20) << said;
   EXPECT_EQ(features("with/glint.png"), 0) << said;
-}
-
-TEST_F(FromPhotographs, FilmThroughTheRealColmap) {
-  if (!HasColmap()) GTEST_SKIP() << "no colmap program";
-  const TexturedBox box;
-  {
-    cv::VideoWriter film(Path("film.avi"), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25, {480, 360});
-    for (int i = 0; i < 40; ++i) film.write(box.Photograph(3 * i, 480, 360));
-  }
-  const ProgramResult result =
-      RunGlint({"run", Path("film.avi"), "-o", Path("out"), "--set", "photos.video.max_frames=12", "--set",
-                "refine.use_highlights=false", "--set", "refine.voxel_rel=0.03"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("12 of 12 images registered"));
-  EXPECT_FALSE(ReadMesh(folder_ / "out/mesh.ply").empty());
 }
 
 }  // namespace
