@@ -94,8 +94,10 @@ Json Geometry(const TriangleMesh& mesh, const PageFrame& frame) {
   std::vector<uint32_t> faces;
   for (const Eigen::Vector3i& face : mesh.faces)
     for (int k = 0; k < 3; ++k) faces.push_back(static_cast<uint32_t>(face[k]));
-  return {{"min", {low.x(), low.y(), low.z()}},   {"size", {size.x(), size.y(), size.z()}},
-          {"positions", Base64Of(positions)},      {"normals", Base64Of(normals)},
+  return {{"min", {low.x(), low.y(), low.z()}},
+          {"size", {size.x(), size.y(), size.z()}},
+          {"positions", Base64Of(positions)},
+          {"normals", Base64Of(normals)},
           {"faces", Base64Of(faces)}};
 }
 

@@ -17,18 +17,17 @@ constexpr int kJpegQuality = 80;
 
 double Tenths(double x) { return std::round(x * 10) / 10; }
 
-// Two standard deviations of the blob.
+// Place, half axes (two standard deviations of the blob), turn of the longer one in degrees, light, status.
 Json ToJson(const Highlight& h) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(h.moments_px);
   const Eigen::Vector2d major = axes.eigenvectors().col(1);
-  return {{"x", Tenths(h.px.x())},
-          {"y", Tenths(h.px.y())},
-          {"a", Tenths(2 * std::sqrt(std::max(axes.eigenvalues()[1], 0.0)))},
-          {"b", Tenths(2 * std::sqrt(std::max(axes.eigenvalues()[0], 0.0)))},
-          {"turn_deg", Tenths(std::atan2(major.y(), major.x()) * 180 / M_PI)},
-          {"strength", std::round(h.strength * 100) / 100},
-          {"light", h.light},
-          {"status", StatusName(h.status)}};
+  return {Tenths(h.px.x()),
+          Tenths(h.px.y()),
+          Tenths(2 * std::sqrt(std::max(axes.eigenvalues()[1], 0.0))),
+          Tenths(2 * std::sqrt(std::max(axes.eigenvalues()[0], 0.0))),
+          std::lround(std::atan2(major.y(), major.x()) * 180 / M_PI),
+          h.light,
+          static_cast<int>(h.status)};
 }
 
 // Empty where there is no photograph.

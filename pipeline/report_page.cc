@@ -66,8 +66,7 @@ std::string_view LevelName(AdviceLevel level) {
 Json AdviceJson(const PageInput& input) {
   const RefineResult& refined = input.refined;
   Json json = Json::array();
-  for (const Advice& advice :
-       GiveAdvice(input.summary, input.scene, refined.contacts, refined.lights, refined.mesh))
+  for (const Advice& advice : GiveAdvice(input.summary, input.scene, refined.contacts, refined.lights, refined.mesh))
     json.push_back({{"level", LevelName(advice.level)}, {"finding", advice.finding}, {"cure", advice.cure}});
   return json;
 }
@@ -119,8 +118,8 @@ std::string ReportPage(const PageInput& input, Progress& progress, const PageOpt
   data["lights"] = PageLights(input.summary.lights, input.scene, frame);
   data["after"] = PageMesh(mesh, input.seed, frame, options.max_faces);
   data["before"] = PageMesh(input.seed, mesh, frame, options.max_faces);
-  data["photos"] =
-      PagePhotos(input.scene, input.images, input.refined.highlights, options.max_photos, options.photo_side_px, progress);
+  data["photos"] = PagePhotos(input.scene, input.images, input.refined.highlights, options.max_photos,
+                              options.photo_side_px, progress);
 
   const size_t place = kReportTemplate.find(kPlace);
   std::string page(kReportTemplate.substr(0, place));

@@ -8,7 +8,9 @@ std::vector<double> MeanCurvature(const TriangleMesh& mesh) {
   GLINT_CHECK_EQ(mesh.normals.size(), mesh.vertices.size());
   std::vector<double> bend(mesh.vertices.size(), 0), area(mesh.vertices.size(), 0);
   for (const Eigen::Vector3i& face : mesh.faces) {
-    const auto corner = [&](int k) -> const Eigen::Vector3d& { return mesh.vertices[static_cast<size_t>(face[k % 3])]; };
+    const auto corner = [&](int k) -> const Eigen::Vector3d& {
+      return mesh.vertices[static_cast<size_t>(face[k % 3])];
+    };
     const Eigen::Vector3d cross = (corner(1) - corner(0)).cross(corner(2) - corner(0));
     const double twice_area = cross.norm();
     if (!(twice_area > 0)) continue;

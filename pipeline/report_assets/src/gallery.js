@@ -1,7 +1,13 @@
 // The photographs with their highlights; a large view in which each can be pointed at or reached by keyboard.
-import { byId, count, el, lightColor, number, svg } from './dom.js';
+import { byId, count, el, lightColor, svg } from './dom.js';
 
 const accepted = (h) => h.status === 'accepted';
+
+function unpack(photo, statuses) {
+  const names = Object.keys(statuses);
+  const highlights = photo.highlights.map(([x, y, a, b, turn_deg, light, status]) => ({ x, y, a, b, turn_deg, light, status: names[status] }));
+  return { ...photo, highlights };
+}
 
 function describe(h, data) {
   if (accepted(h)) return `Used: ${h.light >= 0 ? `light ${h.light}, ` : ''}${data.statuses.accepted}.`;
@@ -21,7 +27,8 @@ function ellipse(h, photo, data, interactive) {
 }
 
 function picture(photo, data, interactive, shown = () => true) {
-  const list = photo.highlights.filter(shown).sort((a, b) => accepted(a) - accepted(b));
+  // Those used come first, for the Tab key.
+  const list = photo.highlights.filter(shown).sort((a, b) => accepted(b) - accepted(a));
   const layer = svg('svg', { viewBox: `0 0 ${photo.width} ${photo.height}`, 'aria-hidden': interactive ? undefined : 'true' },
     ...list.map((h) => ellipse(h, photo, data, interactive)));
   const image = photo.jpeg
@@ -94,16 +101,16 @@ class Lightbox {
 }
 
 export function buildGallery(data, viewer) {
-  const { photos } = data, total = data.scene.views.length;
-  const lightbox = new Lightbox(data, viewer);
+  const photos = data.photos.map((photo) => unpack(photo, data.statuses)), total = data.scene.views.length;
+  const lightbox = new Lightbox({ ...data, photos }, viewer);
   const cards = photos.map((photo, i) => {
     const used = photo.highlights.filter(accepted).length;
-    const text = `${number(used)} used, ${number(photo.highlights.length - used)} rejected`;
+    const text = `${count(used)} used, ${count(photo.highlights.length - used)} rejected`;
     return el('li', {}, el('button', { type: 'button', class: 'card', onclick: () => lightbox.open(i), 'aria-label': `${photo.name}: ${text}` },
-      picture(photo, data, false).box, el('span', { class: 'name' }, photo.name), el('span', { class: 'muted' }, text)));
+      picture(photo, data, false, accepted).box, el('span', { class: 'name' }, photo.name), el('span', { class: 'muted' }, text)));
   });
   byId('gallery').replaceChildren(...cards);
   byId('gallery-note').textContent = photos.length < total
     ? `${count(photos.length)} of ${count(total)} photographs, spread evenly; the folder highlights/ has them all.`
-    : `All ${count(total)} photographs, scaled down. Coloured rings: used, by light; grey dashed rings: rejected.`;
+    : `All ${count(total)} photographs, scaled down, with the highlights that were used; open one to see those rejected, and why.`;
 }

@@ -91,7 +91,7 @@ void main() {
   vec3 base = vec3(0.80, 0.77, 0.72);
   if (mode == 1) {
     vec3 mirrored = reflect(-toEye, n);
-    float phase = 28.0 * acos(clamp(dot(mirrored, up), -0.9999, 0.9999));
+    float phase = 22.0 * acos(clamp(dot(mirrored, up), -0.9999, 0.9999));
     float edge = max(fwidth(phase), 1e-4);
     float stripe = smoothstep(-0.7 * edge, 0.7 * edge, sin(phase));
     stripe = mix(stripe, 0.5, smoothstep(1.5, 3.1, edge));

@@ -1,19 +1,22 @@
 // The surface before and after, side by side under one camera. Draws only when something has changed.
-import { PerspectiveCamera, Quaternion, Scene, Spherical, Vector3, WebGLRenderer } from 'three';
+import { ColorManagement, PerspectiveCamera, Quaternion, Scene, Spherical, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { quantile } from './data.js';
 import * as overlays from './overlays.js';
 import { Surface } from './surface.js';
 
 const kFieldOfView = 35;
+const kFilled = 0.86; // of the picture, by the surface
+const kLowest = 0.42, kHighest = 1.2; // radians above the horizon, to begin with
 
 export class Viewer {
   // Throws where the browser has no WebGL 2.
   constructor(canvas, data, before, after) {
     this.canvas = canvas;
     this.data = data;
+    ColorManagement.enabled = false; // colours are given as the screen shows them
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.outputColorSpace = 'srgb-linear'; // colours are given as the screen shows them
+    this.renderer.outputColorSpace = 'srgb-linear';
     this.renderer.autoClear = false;
     this.camera = new PerspectiveCamera(kFieldOfView, 1, 0.005, 200);
     this.up = new Vector3(...data.scene.up);
@@ -38,8 +41,8 @@ export class Viewer {
     this.controls.addEventListener('change', () => this.draw());
     canvas.addEventListener('keydown', (event) => this.onKey(event));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
-    this.reset();
     this.resize();
+    this.reset();
   }
 
   resize() {
@@ -101,18 +104,34 @@ export class Viewer {
     this.draw();
   }
 
-  // From the side of the camera that saw most highlights, near enough to fill the picture.
+  // From the side of the camera that saw most highlights, a little from above, near enough to fill the picture.
   reset() {
     const start = this.data.scene.views[this.data.scene.start];
     const towards = start ? new Vector3(...start.center).normalize() : new Vector3(0.6, 0.4, 1).normalize();
-    if (!(towards.length() > 0.5) || Math.abs(towards.dot(this.up)) > 0.999) towards.set(0.6, 0.3, 0.74);
-    const narrow = Math.min(1, this.camera.aspect || 1);
+    const level = towards.clone().addScaledVector(this.up, -towards.dot(this.up));
+    if (level.length() < 0.05) level.set(this.up.y, this.up.z, this.up.x).cross(this.up);
+    const lift = Math.min(Math.max(Math.asin(Math.min(Math.max(towards.dot(this.up), -1), 1)), kLowest), kHighest);
+    towards.copy(level.normalize()).multiplyScalar(Math.cos(lift)).addScaledVector(this.up, Math.sin(lift));
     this.camera.fov = kFieldOfView;
-    this.camera.position.copy(towards).multiplyScalar(0.58 / Math.tan((kFieldOfView * Math.PI) / 360) / Math.max(narrow, 0.55));
-    this.controls.target.set(0, 0, 0);
     this.camera.updateProjectionMatrix();
+    this.controls.target.set(0, 0, 0);
+    this.camera.position.copy(towards).multiplyScalar(this.distanceToFill(towards));
     this.controls.update();
     this.draw();
+  }
+
+  // From where the whole surface is in the picture, and fills it.
+  distanceToFill(towards) {
+    const { positions } = (this.after || this.before).mesh;
+    const right = this.up.clone().cross(towards).normalize(), above = towards.clone().cross(right);
+    const tall = kFilled * Math.tan((kFieldOfView * Math.PI) / 360), wide = tall * this.camera.aspect;
+    let distance = 0.1;
+    const at = new Vector3();
+    for (let i = 0; i < positions.length; i += 3) {
+      at.fromArray(positions, i);
+      distance = Math.max(distance, at.dot(towards) + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall));
+    }
+    return distance;
   }
 
   // As the camera of view `index` stood.
