@@ -51,6 +51,11 @@ Json ToJson(const Candidate& c, const std::vector<Region>& regions) {
   for (const FScore& f : m.f_scores)
     json["f_scores"].push_back(
         {{"threshold_rel", f.threshold_rel}, {"precision", f.precision}, {"recall", f.recall}, {"f", f.f}});
+  json["histogram"] = {{"from_rel", -c.histogram.largest_rel},
+                       {"to_rel", c.histogram.largest_rel},
+                       {"shares", c.histogram.shares},
+                       {"below", c.histogram.below},
+                       {"above", c.histogram.above}};
   json["regions"] = Json::object();
   for (const Region& region : regions)
     json["regions"][region.name] = {{"distance_rel", ToJson(DistanceStatsRel(m, region.mask))},

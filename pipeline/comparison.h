@@ -10,6 +10,7 @@
 #include "geometry/triangle_mesh.h"
 #include "light/light.h"
 #include "metrics/compare.h"
+#include "pipeline/error_map.h"
 
 namespace glint {
 
@@ -24,6 +25,7 @@ struct Candidate {
   std::string name;
   TriangleMesh mesh;
   MeshComparison comparison;
+  ErrorHistogram histogram;  // of the signed distances of its vertices
 };
 
 // x_in_reference = scale * R * x + t, read from JSON with the keys "scale", "R" (3 rows of 3) and "t".

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "pipeline/commands/command.h"
 #include "pipeline/commands/option_flags.h"
 #include "pipeline/comparison.h"
+#include "pipeline/error_map.h"
 #include "pipeline/picture.h"
 #include "pipeline/terminal.h"
 #include "pipeline/workspace.h"
@@ -31,8 +33,9 @@ namespace {
 constexpr double kLargestErrorShownDeg = 20;
 
 struct Arguments {
-  std::string mesh, reference, before, project, lights, transform, region, picture, highlights;
+  std::string mesh, reference, before, project, lights, transform, region, picture, highlights, error_map, error_mesh;
   bool json = false;
+  double error_range_rel = 0;  // 0: chosen
   CompareOptions options;
   OptionTable table{options};
 };
@@ -111,6 +114,25 @@ void WritePicture(const Arguments& arguments, const Project& project, const std:
   WriteImagePng(arguments.picture, ComparisonSheet(photograph, columns, reference, view, kLargestErrorShownDeg));
 }
 
+// The errors of the last candidate as a coloured mesh; those of all as pictures.
+void WriteErrors(const Arguments& arguments, std::vector<Candidate>& candidates, const TriangleMesh& reference) {
+  std::vector<ErrorField> fields;
+  for (const Candidate& c : candidates) fields.push_back(MeasureErrors(c.mesh, reference));
+  const double largest_rel = arguments.error_range_rel > 0 ? arguments.error_range_rel : RoundErrorRange(fields);
+  std::vector<ErrorRow> rows;
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    Candidate& c = candidates[i];
+    c.histogram = HistogramOf(fields[i], largest_rel);
+    const ErrorStats& off = c.comparison.accuracy_rel;
+    rows.push_back({c.name, ColoredByError(c.mesh, fields[i], c.comparison.reference_diagonal, largest_rel),
+                    c.histogram,
+                    fmt::format("mean {:.3g} %, median {:.3g} %, 95 % within {:.3g} %, largest {:.3g} %",
+                                100 * off.mean, 100 * off.median, 100 * off.p95, 100 * off.max)});
+  }
+  if (!arguments.error_map.empty()) WriteImagePng(arguments.error_map, ErrorSheet(rows));
+  if (!arguments.error_mesh.empty()) WriteMesh(arguments.error_mesh, rows.back().colored);
+}
+
 void Compare(Arguments& arguments, Terminal& terminal) {
   CheckOptions(arguments.options);
   const Eigen::Affine3d reference_from_mesh =
@@ -122,15 +144,25 @@ void Compare(Arguments& arguments, Terminal& terminal) {
   std::vector<Candidate> candidates;
   for (const std::string& path : {arguments.before, arguments.mesh}) {
     if (path.empty()) continue;
-    Candidate candidate{path, ReadMesh(path), {}};
+    Candidate candidate{path, ReadMesh(path), {}, {}};
     Transform(reference_from_mesh, candidate.mesh);
     EnsureNormals(candidate.mesh);
     candidate.comparison = CompareMeshes(candidate.mesh, reference, arguments.options, {}, terminal);
     candidates.push_back(std::move(candidate));
   }
   if (!arguments.picture.empty()) WritePicture(arguments, *project, candidates, reference, regions);
+  WriteErrors(arguments, candidates, reference);
   terminal.Finish();
   fmt::print("{}", arguments.json ? ComparisonJson(candidates, regions) : ComparisonTable(candidates, regions));
+}
+
+CLI::Validator HasExtension(const std::string& extension) {
+  return {[extension](std::string& file) {
+            return std::filesystem::path(file).extension() == extension
+                       ? ""
+                       : fmt::format("{}: expected a file name that ends in {}", file, extension);
+          },
+          "FILE" + extension};
 }
 
 }  // namespace
@@ -159,6 +191,18 @@ void AddCompareCommand(CLI::App& app, CommandLine& line) {
                       "Also measure where this attribute of the reference's vertices is positive");
   command->add_option("--transform", arguments->transform,
                       "JSON with scale, R, t: x_in_reference = scale R x + t is applied to the meshes first");
+  command
+      ->add_option("--error-map", arguments->error_map,
+                   "PNG to draw: the mesh from four sides in the colours of its distance, and their histogram")
+      ->check(HasExtension(".png"));
+  command
+      ->add_option("--error-mesh", arguments->error_mesh,
+                   "PLY to write: the mesh with these colours, and the distance as the attribute quality")
+      ->check(HasExtension(".ply"));
+  command
+      ->add_option("--error-range", arguments->error_range_rel,
+                   "Where these colours end, a fraction of the reference's diagonal; chosen if not given")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", arguments->json, "Print JSON");
   AddOptionFlags(*command, arguments->table);
   AddCommonOptions(*command, line);
