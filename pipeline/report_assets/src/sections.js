@@ -19,7 +19,7 @@ export function buildHeader(data) {
   const used = report.highlights.final_by_status.accepted || 0;
   const facts = [
     ['photographs', count(report.project.views)],
-    ['highlights used', `${count(used)} of ${count(report.highlights.candidates)}`],
+    [`of ${count(report.highlights.candidates)} highlights used`, count(used)],
     ['lights', count(report.lights.refined.filter((l) => l.determined).length)],
     ['triangles', count(report.mesh.faces)],
     ['iterations', count(report.refine.iterations.length)],
