@@ -74,8 +74,17 @@ Json Report(const fs::path& out) {
   return report;
 }
 
+// report.html without its element of what may differ: command and times.
+std::string Page(const fs::path& out) {
+  std::string page = ReadText(out / "report.html");
+  const size_t begin = page.find("id=\"glint-run\""), end = page.find("</script>", begin);
+  EXPECT_LT(begin, end);
+  EXPECT_NE(end, std::string::npos);
+  return page.erase(begin, end - begin);
+}
+
 TEST_F(Run, WritesEveryResult) {
-  for (const char* name : {"mesh.ply", "sdf.vdb", "seed.ply", "lights.json", "config.yaml", "report.json", "log.txt",
+  for (const char* name : {"mesh.ply", "sdf.vdb", "seed.ply", "lights.json", "config.yaml", "report.html", "report.json", "log.txt",
                            "highlights/view_000.jpg.png", "highlights/view_019.jpg.png"})
     EXPECT_TRUE(fs::exists(Out() / name)) << name;
   EXPECT_THAT(ReadText(Out() / "mesh.ply").substr(0, 1000),
@@ -113,6 +122,7 @@ TEST_F(Run, ByteIdenticalAtAnyNumberOfThreads) {
                            "stages/highlights.json", "highlights/view_007.jpg.png"})
     EXPECT_TRUE(ReadText(folder_ / "one" / name) == ReadText(Out() / name)) << name;
   EXPECT_EQ(Report(folder_ / "one"), Report(Out()));
+  EXPECT_TRUE(Page(folder_ / "one") == Page(Out()));
 }
 
 TEST_F(Run, GoesOnFromAnyStageToTheSameMesh) {
@@ -159,7 +169,7 @@ TEST_F(Run, TooFewHighlightsForALightAreSaidAndKept) {
   const ProgramResult result = RunGlint(Arguments(Path("dark"), {"--set", "lights.min_support=1000"}, false));
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, AllOf(HasSubstr("--lights"), HasSubstr(Path("dark"))));
-  for (const char* name : {"seed.ply", "report.json", "highlights/view_000.jpg.png"})
+  for (const char* name : {"seed.ply", "report.html", "report.json", "highlights/view_000.jpg.png"})
     EXPECT_TRUE(fs::exists(folder_ / "dark" / name)) << name;
   EXPECT_FALSE(fs::exists(folder_ / "dark/mesh.ply"));
   EXPECT_THAT(Report(folder_ / "dark")["outcome"].get<std::string>(), HasSubstr("lights"));

@@ -25,7 +25,8 @@ function range(values, log) {
 
 // series: [{name, className, values}], one value an iteration; `limit`: a line that is to be reached.
 export function plot({ title, unit, series, log = false, limit }) {
-  const all = series.flatMap((s) => s.values).concat(limit === undefined ? [] : [limit]);
+  const all = series.flatMap((s) => s.values).concat(limit === undefined ? [] : [limit]).filter(Number.isFinite);
+  if (!all.length) return el('figure', { class: 'plot' }, el('figcaption', {}, title), el('p', { class: 'empty' }, 'nothing measured'));
   const useLog = log && all.every((v) => v > 0);
   const [low, high] = range(all, useLog);
   const scale = useLog ? Math.log10 : (v) => v;
@@ -41,9 +42,10 @@ export function plot({ title, unit, series, log = false, limit }) {
   chart.append(svg('text', { class: 'tick', x: (kLeft + kWidth - kRight) / 2, y: kHeight - 4, 'text-anchor': 'middle' }, 'iteration'));
   if (limit !== undefined) chart.append(svg('line', { class: 'limit', x1: kLeft, x2: kWidth - kRight, y1: y(limit), y2: y(limit) }));
   for (const { name, className, values } of series) {
-    chart.append(svg('polyline', { class: `line ${className}`, points: values.map((v, i) => `${x(i)},${y(v)}`).join(' ') }));
-    values.forEach((v, i) => chart.append(svg('circle', { class: `dot ${className}`, cx: x(i), cy: y(v), r: 3.5 },
-      svg('title', {}, `iteration ${i + 1}, ${name}: ${number(v, 4)}`))));
+    const known = values.map((v, i) => [i, v]).filter(([, v]) => Number.isFinite(v));
+    chart.append(svg('polyline', { class: `line ${className}`, points: known.map(([i, v]) => `${x(i)},${y(v)}`).join(' ') }));
+    for (const [i, v] of known)
+      chart.append(svg('circle', { class: `dot ${className}`, cx: x(i), cy: y(v), r: 3.5 }, svg('title', {}, `iteration ${i + 1}, ${name}: ${number(v, 4)}`)));
   }
   const key = series.length > 1
     ? el('div', { class: 'key' }, ...series.map((s) => el('span', {}, el('i', { class: s.className }), s.name)))
