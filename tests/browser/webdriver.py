@@ -145,21 +145,18 @@ class Browser:
         move = {"type": "pointerMove", "duration": 0, "origin": {self.ELEMENT: self.find(selector)}, "x": 0, "y": 0}
         self._call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [move]}]})
 
-    def screenshot(self, path=None, selector=None):
-        place = f"/element/{self.find(selector)}" if selector else ""
-        data = base64.b64decode(self._call("GET", place + "/screenshot"))
+    def screenshot(self, path=None, selector=None, scale=1):
+        """PNG of what the window shows, or of one element in it, scaled."""
+        box = self.run(
+            "const b = document.querySelector(arguments[0]).getBoundingClientRect();"
+            "return {x: b.x + scrollX, y: b.y + scrollY, width: b.width, height: b.height}", selector
+        ) if selector else None  # fmt: skip
+        parameters = {"clip": {**box, "scale": scale}} if box else {}
+        data = base64.b64decode(self.devtools("Page.captureScreenshot", parameters)["data"])
         if path:
             with open(path, "wb") as file:
                 file.write(data)
         return data
-
-    def page_screenshot(self, path, height=None):
-        """The whole page from top to bottom."""
-        size = self.devtools("Page.getLayoutMetrics", {})["cssContentSize"]
-        clip = {"x": 0, "y": 0, "width": size["width"], "height": height or size["height"], "scale": 1}
-        shot = self.devtools("Page.captureScreenshot", {"clip": clip, "captureBeyondViewport": True})
-        with open(path, "wb") as file:
-            file.write(base64.b64decode(shot["data"]))
 
     def log(self):
         """What the console has said since the last call: [{level, message}, ...]."""
