@@ -2,12 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "core/check.h"
 #include "metrics/compare.h"
 #include "sdf/signed_distance.h"
 
 namespace glint {
+namespace {
+
+// Nine tenths of the surface are triangles without a longer edge.
+bool MostlyShort(const TriangleMesh& mesh, double edge) {
+  double total = 0, longer = 0;
+  for (const Eigen::Vector3i& f : mesh.faces) {
+    const auto at = [&](int k) -> const Eigen::Vector3d& { return mesh.vertices[static_cast<size_t>(f[k % 3])]; };
+    const double area = (at(1) - at(0)).cross(at(2) - at(0)).norm();
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, (at(k + 1) - at(k)).norm());
+    total += area;
+    if (longest > edge) longer += area;
+  }
+  return longer <= 0.1 * total;
+}
+
+}  // namespace
 
 ErrorField MeasureErrors(const TriangleMesh& mesh, const TriangleMesh& reference) {
   const double diagonal = Diagonal(reference);
@@ -21,6 +40,30 @@ ErrorField MeasureErrors(const TriangleMesh& mesh, const TriangleMesh& reference
     for (int k = 0; k < 3; ++k) field.area[static_cast<size_t>(face[k])] += area / 3;
   }
   return field;
+}
+
+TriangleMesh Divided(const TriangleMesh& mesh, double edge, size_t max_faces) {
+  TriangleMesh out;
+  out.vertices = mesh.vertices;
+  out.faces = mesh.faces;
+  while (4 * out.faces.size() <= max_faces && !MostlyShort(out, edge)) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto [entry, added] = middles.try_emplace(std::minmax(a, b), static_cast<int>(out.vertices.size()));
+      if (added)
+        out.vertices.push_back((out.vertices[static_cast<size_t>(a)] + out.vertices[static_cast<size_t>(b)]) / 2);
+      return entry->second;
+    };
+    std::vector<Eigen::Vector3i> faces;
+    for (const Eigen::Vector3i& f : out.faces) {
+      const int a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
+      for (const Eigen::Vector3i& part : {Eigen::Vector3i(f[0], a, c), Eigen::Vector3i(f[1], b, a),
+                                          Eigen::Vector3i(f[2], c, b), Eigen::Vector3i(a, b, c)})
+        faces.push_back(part);
+    }
+    out.faces = std::move(faces);
+  }
+  return out;
 }
 
 ErrorHistogram HistogramOf(const ErrorField& field, double largest_rel, int num_bins) {

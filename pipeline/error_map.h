@@ -21,6 +21,11 @@ struct ErrorField {
 };
 ErrorField MeasureErrors(const TriangleMesh& mesh, const TriangleMesh& reference);
 
+// The mesh with its triangles divided into four, as often as it takes for most edges to be shorter than `edge`, so that
+// colours and shares are those of the surface and not of the corners of a few large triangles. Positions and faces
+// only.
+TriangleMesh Divided(const TriangleMesh& mesh, double edge, size_t max_faces = 500000);
+
 // Shares of the surface in bins of equal width over [-largest_rel, largest_rel]; what lies beyond is in `below`,
 // `above`.
 struct ErrorHistogram {

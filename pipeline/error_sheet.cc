@@ -12,7 +12,8 @@ namespace glint {
 namespace {
 
 constexpr int kPanelWidth = 300, kPanelHeight = 250;  // px, of one side
-constexpr int kPlotWidth = 420;
+constexpr double kFilled = 0.92;                      // of the panel, by the surface
+constexpr int kPlotWidth = 440;
 constexpr int kTitleHeight = 28;
 constexpr int kMargin = 16;
 constexpr int kScaleHeight = 10;
@@ -28,9 +29,18 @@ void PutText(cv::Mat& sheet, int x, int y, const std::string& text, double size 
 cv::Scalar Bgr(const std::array<uint8_t, 3>& rgb) { return cv::Scalar(rgb[2], rgb[1], rgb[0]); }
 
 cv::Mat Panel(const TriangleMesh& mesh, const Eigen::Vector3d& direction) {
-  const PictureView view =
+  PictureView view =
       ViewOfBox(BoundingBox(mesh), direction.normalized(), Eigen::Vector3d::UnitY(), kPanelWidth, kPanelHeight);
-  std::vector<uint8_t> pixels = RenderMesh(mesh, view);
+  double reach = 1e-9;  // half the picture's size, of what lies furthest from its middle
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    const Eigen::Vector3d x = view.cam_from_world * v;
+    reach = std::max({reach, std::abs(x.x() / x.z()) * view.focal_px / (0.5 * kPanelWidth),
+                      std::abs(x.y() / x.z()) * view.focal_px / (0.5 * kPanelHeight)});
+  }
+  view.focal_px *= kFilled / reach;
+  MeshLook look;
+  look.smooth = false;
+  std::vector<uint8_t> pixels = RenderMesh(mesh, view, look);
   cv::Mat bgr;
   cv::cvtColor(cv::Mat(kPanelHeight, kPanelWidth, CV_8UC3, pixels.data()), bgr, cv::COLOR_RGB2BGR);
   return bgr;

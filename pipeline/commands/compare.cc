@@ -31,6 +31,7 @@ namespace glint {
 namespace {
 
 constexpr double kLargestErrorShownDeg = 20;
+constexpr double kDividedRel = 0.01;  // edges of a mesh that is coloured by its errors, of the reference's diagonal
 
 struct Arguments {
   std::string mesh, reference, before, project, lights, transform, region, picture, highlights, error_map, error_mesh;
@@ -116,16 +117,20 @@ void WritePicture(const Arguments& arguments, const Project& project, const std:
 
 // The errors of the last candidate as a coloured mesh; those of all as pictures.
 void WriteErrors(const Arguments& arguments, std::vector<Candidate>& candidates, const TriangleMesh& reference) {
+  const double diagonal = Diagonal(reference);
+  std::vector<TriangleMesh> meshes;
   std::vector<ErrorField> fields;
-  for (const Candidate& c : candidates) fields.push_back(MeasureErrors(c.mesh, reference));
+  for (const Candidate& c : candidates) {
+    meshes.push_back(Divided(c.mesh, kDividedRel * diagonal));
+    fields.push_back(MeasureErrors(meshes.back(), reference));
+  }
   const double largest_rel = arguments.error_range_rel > 0 ? arguments.error_range_rel : RoundErrorRange(fields);
   std::vector<ErrorRow> rows;
   for (size_t i = 0; i < candidates.size(); ++i) {
     Candidate& c = candidates[i];
     c.histogram = HistogramOf(fields[i], largest_rel);
     const ErrorStats& off = c.comparison.accuracy_rel;
-    rows.push_back({c.name, ColoredByError(c.mesh, fields[i], c.comparison.reference_diagonal, largest_rel),
-                    c.histogram,
+    rows.push_back({c.name, ColoredByError(std::move(meshes[i]), fields[i], diagonal, largest_rel), c.histogram,
                     fmt::format("mean {:.3g} %, median {:.3g} %, 95 % within {:.3g} %, largest {:.3g} %",
                                 100 * off.mean, 100 * off.median, 100 * off.p95, 100 * off.max)});
   }
@@ -151,7 +156,8 @@ void Compare(Arguments& arguments, Terminal& terminal) {
     candidates.push_back(std::move(candidate));
   }
   if (!arguments.picture.empty()) WritePicture(arguments, *project, candidates, reference, regions);
-  WriteErrors(arguments, candidates, reference);
+  if (arguments.json || !arguments.error_map.empty() || !arguments.error_mesh.empty())
+    WriteErrors(arguments, candidates, reference);
   terminal.Finish();
   fmt::print("{}", arguments.json ? ComparisonJson(candidates, regions) : ComparisonTable(candidates, regions));
 }
@@ -197,7 +203,7 @@ void AddCompareCommand(CLI::App& app, CommandLine& line) {
       ->check(HasExtension(".png"));
   command
       ->add_option("--error-mesh", arguments->error_mesh,
-                   "PLY to write: the mesh with these colours, and the distance as the attribute quality")
+                   "PLY to write: the mesh, large triangles divided, with these colours and the distance as quality")
       ->check(HasExtension(".ply"));
   command
       ->add_option("--error-range", arguments->error_range_rel,

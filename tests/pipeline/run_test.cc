@@ -84,8 +84,8 @@ std::string Page(const fs::path& out) {
 }
 
 TEST_F(Run, WritesEveryResult) {
-  for (const char* name : {"mesh.ply", "sdf.vdb", "seed.ply", "lights.json", "config.yaml", "report.html", "report.json", "log.txt",
-                           "highlights/view_000.jpg.png", "highlights/view_019.jpg.png"})
+  for (const char* name : {"mesh.ply", "sdf.vdb", "seed.ply", "lights.json", "config.yaml", "report.html",
+                           "report.json", "log.txt", "highlights/view_000.jpg.png", "highlights/view_019.jpg.png"})
     EXPECT_TRUE(fs::exists(Out() / name)) << name;
   EXPECT_THAT(ReadText(Out() / "mesh.ply").substr(0, 1000),
               AllOf(HasSubstr("property float nx"), HasSubstr("property float confidence")));

@@ -39,10 +39,12 @@ export class Viewer {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('start', () => (this.untouched = false));
+    this.untouched = true; // then the view may be chosen again, when the picture's size changes
     canvas.addEventListener('keydown', (event) => this.onKey(event));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
-    this.resize();
     this.reset();
+    this.resize();
   }
 
   resize() {
@@ -52,7 +54,8 @@ export class Viewer {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.draw();
+    if (this.untouched) this.reset();
+    else this.draw();
   }
 
   draw() {
@@ -117,25 +120,29 @@ export class Viewer {
     this.controls.target.set(0, 0, 0);
     this.camera.position.copy(towards).multiplyScalar(this.distanceToFill(towards));
     this.controls.update();
+    this.untouched = true;
     this.draw();
   }
 
   // From where the whole surface is in the picture, and fills it.
   distanceToFill(towards) {
-    const { positions } = (this.after || this.before).mesh;
     const right = this.up.clone().cross(towards).normalize(), above = towards.clone().cross(right);
     const tall = kFilled * Math.tan((kFieldOfView * Math.PI) / 360), wide = tall * this.camera.aspect;
     let distance = 0.1;
     const at = new Vector3();
-    for (let i = 0; i < positions.length; i += 3) {
-      at.fromArray(positions, i);
-      distance = Math.max(distance, at.dot(towards) + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall));
+    for (const surface of [this.before, this.after]) {
+      const positions = surface ? surface.mesh.positions : [];
+      for (let i = 0; i < positions.length; i += 3) {
+        at.fromArray(positions, i);
+        distance = Math.max(distance, at.dot(towards) + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall));
+      }
     }
     return distance;
   }
 
   // As the camera of view `index` stood.
   lookFrom(index) {
+    this.untouched = false;
     const { center, corners } = this.data.scene.views[index];
     const eye = new Vector3(...center);
     const rays = corners.map((ray) => new Vector3(...ray));
@@ -150,6 +157,7 @@ export class Viewer {
   }
 
   orbit(turn, lift, zoom) {
+    this.untouched = false;
     const offset = this.camera.position.clone().sub(this.controls.target);
     const toY = new Quaternion().setFromUnitVectors(this.up, new Vector3(0, 1, 0));
     const at = new Spherical().setFromVector3(offset.applyQuaternion(toY));
