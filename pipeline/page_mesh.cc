@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -60,6 +61,7 @@ TriangleMesh SimplifiedWithAttributes(const TriangleMesh& full, size_t max_faces
   const size_t n = out.vertices.size();
   out.normals.resize(n);
   if (!full.confidence.empty()) out.confidence.resize(n);
+  if (!full.colors.empty()) out.colors.resize(n);
   for (const auto& [name, values] : full.scalars) out.scalars.emplace_back(name, std::vector<float>(n));
   ParallelFor(n, kGrain, [&](size_t v) {
     const MeshPoint at = *query.Find(out.vertices[v]);
@@ -76,6 +78,9 @@ TriangleMesh SimplifiedWithAttributes(const TriangleMesh& full, size_t max_faces
     for (int k = 0; k < 3; ++k) normal += weights[k] * full.normals[corner(k)];
     out.normals[v] = normal.normalized();
     if (!full.confidence.empty()) out.confidence[v] = mix(full.confidence);
+    int nearest = 0;
+    weights.maxCoeff(&nearest);
+    if (!full.colors.empty()) out.colors[v] = full.colors[corner(nearest)];
     for (size_t s = 0; s < full.scalars.size(); ++s) out.scalars[s].second[v] = mix(full.scalars[s].second);
   });
   return out;
@@ -118,6 +123,11 @@ Json PageMesh(const TriangleMesh& mesh, const TriangleMesh& other, const PageFra
                {"full_vertices", mesh.vertices.size()},
                {"full_faces", mesh.faces.size()}};
   json["geometry"] = Geometry(shown, frame);
+  if (!shown.colors.empty()) {
+    std::string rgb;
+    for (const std::array<uint8_t, 3>& color : shown.colors) rgb.append(color.begin(), color.end());
+    json["colors"] = Base64(rgb);
+  }
   Json& attributes = json["attributes"] = Json::object();
   if (!shown.confidence.empty()) attributes["confidence"] = Attribute(ToDouble(shown.confidence));
   for (const auto& [name, values] : shown.scalars)

@@ -97,7 +97,7 @@ def check_viewer(browser):
     striped = pixels(browser)
     expect(dark_share(striped) > 0.03, f"the viewer draws reflection lines ({dark_share(striped):.3f} of it is dark)")
     last = striped
-    for mode in ("plain", "confidence", "moved", "curvature", "sigma"):
+    for mode in ("plain", "photo", "confidence", "moved", "curvature", "sigma"):
         browser.click(f"label[for=mode-{mode}]")
         now = pixels(browser)
         expect(difference(last, now) > 0.01, f"colour by {mode} changes the picture ({difference(last, now):.3f})")

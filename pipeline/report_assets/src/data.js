@@ -42,6 +42,7 @@ export function decodeMesh(mesh) {
     attributes,
     positions: positions(mesh.geometry),
     normals: normals(mesh.geometry),
+    colors: mesh.colors && bytes(mesh.colors),
     faces: array(Uint32Array, mesh.geometry.faces),
   };
 }

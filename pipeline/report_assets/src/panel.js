@@ -71,7 +71,7 @@ function comparison(data, viewer, stage) {
 }
 
 function colours(data, viewer) {
-  const known = modes.filter((mode) => !mode.attribute || viewer.rangeOf(mode));
+  const known = modes.filter((mode) => (!mode.attribute || viewer.rangeOf(mode)) && (!mode.colors || viewer.hasColors()));
   const about = el('div', { 'aria-live': 'polite' });
   const choose = (id) => {
     const mode = known.find((m) => m.id === id);

@@ -11,6 +11,12 @@ export const maps = {
 export const modes = [
   { id: 'plain', name: 'Plain', about: 'The surface as clay under one lamp beside you.' },
   {
+    id: 'photo',
+    name: 'Photographs',
+    colors: true,
+    about: 'The colour of the surface in the photographs, without the highlights.',
+  },
+  {
     id: 'zebra',
     name: 'Reflection lines',
     about: 'The mirror image of a striped room. Stripes that flow are a fair surface; a kink or a wobble is a wrong normal.',
@@ -52,10 +58,13 @@ export const modes = [
 
 const vertexShader = `
 in float value;
+in vec3 tint;
+out vec3 vTint;
 out vec3 vNormal;
 out vec3 vWorld;
 out float vValue;
 void main() {
+  vTint = tint;
   vNormal = normal;
   vWorld = position;
   vValue = value;
@@ -63,6 +72,7 @@ void main() {
 }`;
 
 const fragmentShader = `
+in vec3 vTint;
 in vec3 vNormal;
 in vec3 vWorld;
 in float vValue;
@@ -70,7 +80,7 @@ out vec4 color;
 uniform vec3 stops[5];
 uniform vec3 up;
 uniform float low, high;
-uniform int mode;  // 0 plain, 1 reflection lines, 2 values
+uniform int mode;  // 0 plain, 1 reflection lines, 2 values, 3 colours
 vec3 mapped(float t) {
   float x = 4.0 * clamp(t, 0.0, 1.0);
   int below = int(min(floor(x), 3.0));
@@ -101,6 +111,10 @@ void main() {
   } else if (mode == 2) {
     base = mapped((vValue - low) / (high - low));
     gloss *= 0.35;
+  } else if (mode == 3) {
+    base = vTint;
+    shade = 0.82 + 0.2 * diffuse;
+    gloss = 0.0;
   }
   if (back) base = mix(base, vec3(0.55, 0.25, 0.22), 0.7);
   color = vec4(base * shade + 0.16 * gloss, 1.0);
@@ -115,6 +129,7 @@ export class Surface {
     geometry.setAttribute('position', new BufferAttribute(mesh.positions, 3));
     geometry.setAttribute('normal', new BufferAttribute(mesh.normals, 3));
     geometry.setAttribute('value', new BufferAttribute(new Float32Array(mesh.positions.length / 3), 1));
+    if (mesh.colors) geometry.setAttribute('tint', new BufferAttribute(mesh.colors, 3, true));
     geometry.setIndex(new BufferAttribute(mesh.faces, 1));
     this.uniforms = {
       stops: { value: maps.sequential.map(rgb) },
@@ -133,7 +148,7 @@ export class Surface {
   // Colours by `mode` between `low` and `high`; plain where the mesh does not know the attribute.
   show(mode, low, high) {
     const values = mode.attribute && this.mesh.attributes[mode.attribute];
-    this.uniforms.mode.value = mode.id === 'zebra' ? 1 : values ? 2 : 0;
+    this.uniforms.mode.value = mode.id === 'zebra' ? 1 : values ? 2 : mode.colors && this.mesh.colors ? 3 : 0;
     if (!values) return;
     const stops = maps[mode.map].map(rgb);
     this.uniforms.stops.value = mode.reversed ? stops.reverse() : stops;

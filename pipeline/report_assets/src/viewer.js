@@ -91,6 +91,10 @@ export class Viewer {
     return mode.symmetric ? [-high, high] : [0, high];
   }
 
+  hasColors() {
+    return [this.before, this.after].some((s) => s && s.mesh.colors);
+  }
+
   color(mode) {
     const [low, high] = this.rangeOf(mode) || [0, 1];
     for (const surface of [this.before, this.after]) if (surface) surface.show(mode, low, high);
