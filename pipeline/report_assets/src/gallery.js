@@ -1,6 +1,8 @@
 // The photographs with their highlights; a large view in which each can be pointed at or reached by keyboard.
 import { byId, count, el, lightColor, svg } from './dom.js';
 
+const kLarge = 0.06; // of the photograph's width: such a ring is pointed at by its line, for others lie within
+
 const accepted = (h) => h.status === 'accepted';
 
 function unpack(photo, statuses) {
@@ -23,12 +25,13 @@ function ellipse(h, photo, data, interactive) {
   if (accepted(h)) shape.style.stroke = lightColor(Math.max(h.light, 0));
   if (!interactive) return shape;
   const text = describe(h, data);
-  return svg('g', { tabindex: 0, role: 'img', 'aria-label': text, class: 'spot', 'data-reason': text }, shape);
+  const large = h.a > kLarge * photo.width ? ' large' : '';
+  return svg('g', { tabindex: 0, role: 'img', 'aria-label': text, class: `spot${large}`, 'data-reason': text }, shape);
 }
 
 function picture(photo, data, interactive, shown = () => true) {
-  // Those used come first, for the Tab key.
-  const list = photo.highlights.filter(shown).sort((a, b) => accepted(b) - accepted(a));
+  // Those used come first, for the Tab key; the small ones last, on top of the large.
+  const list = photo.highlights.filter(shown).sort((p, q) => accepted(q) - accepted(p) || q.a * q.b - p.a * p.b);
   const layer = svg('svg', { viewBox: `0 0 ${photo.width} ${photo.height}`, 'aria-hidden': interactive ? undefined : 'true' },
     ...list.map((h) => ellipse(h, photo, data, interactive)));
   const image = photo.jpeg
