@@ -131,8 +131,8 @@ void WriteErrors(const Arguments& arguments, std::vector<Candidate>& candidates,
     c.histogram = HistogramOf(fields[i], largest_rel);
     const ErrorStats& off = c.comparison.accuracy_rel;
     rows.push_back({c.name, ColoredByError(std::move(meshes[i]), fields[i], diagonal, largest_rel), c.histogram,
-                    fmt::format("mean {:.3g} %, median {:.3g} %, 95 % within {:.3g} %, largest {:.3g} %",
-                                100 * off.mean, 100 * off.median, 100 * off.p95, 100 * off.max)});
+                    fmt::format("mean {:.3g} %, median {:.3g} %, 95 % below {:.3g} %, max {:.3g} %", 100 * off.mean,
+                                100 * off.median, 100 * off.p95, 100 * off.max)});
   }
   if (!arguments.error_map.empty()) WriteImagePng(arguments.error_map, ErrorSheet(rows));
   if (!arguments.error_mesh.empty()) WriteMesh(arguments.error_mesh, rows.back().colored);
