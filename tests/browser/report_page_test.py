@@ -112,17 +112,21 @@ def check_viewer(browser):
     expect(difference(before, after) > 0.01, f"before and after differ ({difference(before, after):.3f})")
     both = share_of(browser, 50)
     expect(difference(both, before) > 0.003 and difference(both, after) > 0.003, "the slider shows a part of each")
+    browser.drag(".divider", 120, 0)
+    moved = pixels(browser)
+    expect(difference(both, moved) > 0.003, "dragging the line moves it")
+    share_of(browser, 0)  # without the line in the middle, where the mouse goes down
     browser.drag("#canvas", 120, 40)
     turned = pixels(browser)
-    expect(difference(both, turned) > 0.02, "dragging turns the surface")
+    expect(difference(after, turned) > 0.02, "dragging turns the surface")
     browser.run("document.getElementById('canvas').focus()")
     browser.press(["+", "+", ARROW_RIGHT])
     expect(difference(turned, pixels(browser)) > 0.02, "keys turn and zoom")
     browser.press(["0"])
     browser.run("document.activeElement.blur()")  # the focus draws a frame
-    expect(difference(both, pixels(browser)) < 0.002, "0 resets the view")
+    expect(difference(after, pixels(browser)) < 0.002, "0 resets the view")
     browser.run("const s = document.getElementById('standpoint'); s.value = 3; s.dispatchEvent(new Event('change'))")
-    expect(difference(both, pixels(browser)) > 0.02, "the view from a camera is another one")
+    expect(difference(after, pixels(browser)) > 0.02, "the view from a camera is another one")
 
 
 def share_of(browser, share):
