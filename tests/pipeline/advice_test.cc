@@ -41,6 +41,7 @@ struct GoodRun {
       Contact& contact = contacts.emplace_back();
       contact.origin = {3 * std::cos(turn), 3 * std::sin(turn), -1};
       contact.direction = -contact.origin.normalized();
+      contact.cam_from_world.translation = -contact.origin;
       contact.depth = 2;
     }
     mesh.confidence.assign(100, 0.8f);
@@ -77,6 +78,7 @@ TEST(Advice, HighlightsOnOneSide) {
   for (Contact& contact : run.contacts) {
     contact.origin = {0.2 * contact.origin.x(), 0.2 * contact.origin.y(), 3};
     contact.direction = -contact.origin.normalized();
+    contact.cam_from_world.translation = -contact.origin;
   }
   EXPECT_THAT(run.Give(), Finding("All highlights lie on one side"));
 }

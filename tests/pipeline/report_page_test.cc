@@ -75,7 +75,7 @@ struct Fixture {
 TEST(ReportPage, MarkupInNamesIsNoMarkup) {
   const std::string name = "</script><!--<script>alert('&amp;')\xff\".jpg";
   const std::string page = Fixture(name).Page(), plain = Fixture("a.jpg").Page();
-  EXPECT_THAT(page, Not(HasSubstr("alert(")));
+  EXPECT_EQ(page.find("<script>alert"), std::string::npos);
   const auto count = [](const std::string& text, const char* part) {
     size_t n = 0;
     for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
