@@ -29,9 +29,9 @@ struct PageFrame {
 std::string Base64(std::string_view bytes);
 
 // A mesh as little-endian arrays in base64: positions of 16 bits in their box, octahedral normals of 16 bits,
-// indices, colours of 8 bits, and attributes of 16 bits in their range: those of the mesh, "moved_rel" (signed distance to `other`, in
-// diagonals; left out where `other` is empty) and "curvature" (mean curvature times the diagonal). Meshes of more than
-// `max_faces` are simplified.
+// indices, colours of 8 bits, and attributes of 16 bits in their range: those of the mesh, "moved_rel" (signed distance
+// to `other`, in diagonals; left out where `other` is empty) and "curvature" (mean curvature times the diagonal).
+// Meshes of more than `max_faces` are simplified.
 Json PageMesh(const TriangleMesh& mesh, const TriangleMesh& other, const PageFrame& frame, size_t max_faces);
 
 // Cameras as centre and four corner rays, what is up, and the view that sees most accepted highlights.
