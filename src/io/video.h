@@ -12,7 +12,7 @@
 namespace glint {
 
 struct VideoOptions {
-  double step_rel = 0.06;
+  double step_rel = 0.03;
   int max_frames = 120;
 
   void Visit(OptionVisitor& v);
