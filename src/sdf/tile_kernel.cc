@@ -88,6 +88,13 @@ void ComputeBlock(const Tile& tile, int block, size_t num_candidates, const Exac
   }
 }
 
+// True if so many triangles are larger than a block that bounding spheres would leave most blocks with all of them.
+bool ManyLarge(size_t n, const TileScratch& scratch) {
+  size_t large = 0;
+  for (size_t i = 0; i < n; ++i) large += scratch.spheres[i / kGroup * 4 + 3].lane[i % kGroup] > 2 * kBlockRadius;
+  return 16 * large > n;
+}
+
 void ComputeTileImpl(const Tile& tile, const ExactSide& exact, TileScratch& scratch, TileDistances& out) {
   constexpr size_t kCullAbove = 24, kDistancesUpTo = 96;
   std::memset(out.active, 0, sizeof out.active);
@@ -110,7 +117,7 @@ void ComputeTileImpl(const Tile& tile, const ExactSide& exact, TileScratch& scra
   scratch.counters.kept_triangles += n;
   ComputeFrames(n, stride, scratch);
   const float reach = tile.half_width + kBlockRadius + 1e-3f;
-  const bool by_distances = n <= kDistancesUpTo;
+  const bool by_distances = n <= kDistancesUpTo || ManyLarge(n, scratch);
   const uint32_t blocks = by_distances ? SelectByDistances(n, reach, scratch) : ~0u;
   for (int block = 0; block < kNumBlocks; ++block) {
     if (!(blocks >> block & 1)) continue;

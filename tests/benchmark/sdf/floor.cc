@@ -85,7 +85,7 @@ double PeakBytes(const TriangleMesh& mesh, double* voxels, double* field_bytes) 
   LevelSet field;
   const double h = BoundingBox(mesh).sizes().maxCoeff() / 512;
   const Cost cost = Measure(
-      1, [&] { field = MeshToLevelSet(mesh, h); }, [] {});
+      3, [&] { field = MeshToLevelSet(mesh, h); }, [&] { field = LevelSet(); });
   *voxels = static_cast<double>(field.num_active_voxels());
   *field_bytes = static_cast<double>(field.memory_bytes());
   return cost.peak_bytes;
