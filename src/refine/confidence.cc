@@ -30,7 +30,7 @@ void AddConfidence(const std::vector<OrientedPoint>& contacts, const std::vector
       if (kNormalDrift * r > kSeedNormalSigma) continue;
       const double n_here = std::hypot(c.sigma_normal, kNormalDrift * r);
       normal = std::min(normal, n_here);
-      position = std::min(position, std::hypot(c.sigma_position, 0.5 * r * n_here));
+      if (c.sigma_position > 0) position = std::min(position, std::hypot(c.sigma_position, 0.5 * r * n_here));
     }
     for (const SurfacePoint& p : points) {
       const double r = (mesh.vertices[v] - p.position).norm();
