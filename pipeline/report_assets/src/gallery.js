@@ -48,8 +48,14 @@ function explain(layer, note) {
     note.textContent = spot ? spot.dataset.reason : note.dataset.idle;
     note.classList.toggle('active', Boolean(spot));
   };
-  for (const kind of ['pointerover', 'focusin']) layer.addEventListener(kind, show);
-  layer.addEventListener('click', show);
+  // A pointer at rest says nothing: what scrolls below it must not hide the reason of the one with the focus.
+  let at = '';
+  layer.addEventListener('pointermove', (event) => {
+    const here = `${event.screenX},${event.screenY}`;
+    if (here !== at) show(event);
+    at = here;
+  });
+  for (const kind of ['focusin', 'click']) layer.addEventListener(kind, show);
 }
 
 class Lightbox {
