@@ -1,0 +1,82 @@
+#include "silhouette/agreement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace glint::internal {
+namespace {
+
+constexpr int kSteps = 40;  // through the ball
+constexpr int kFinerSteps = 8;
+
+}  // namespace
+
+std::optional<double> OutsideBy(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x,
+                                int skip) {
+  std::array<double, kContradictions> worst;
+  worst.fill(-kFar);
+  int witnesses = 0;
+  for (int m = 0; m < static_cast<int>(masks.size()); ++m) {
+    if (m == skip) continue;
+    const View& view = scene.views[masks[m].view];
+    const auto px = view.Project(x);
+    if (!px) continue;
+    const auto distance_px = masks[m].DistanceAt(view, *px);
+    if (!distance_px) continue;
+    ++witnesses;
+    double d = *distance_px * (x - masks[m].eye).norm() / masks[m].focal_px;
+    for (double& w : worst)
+      if (d > w) std::swap(d, w);
+  }
+  if (witnesses < kMinWitnesses) return std::nullopt;
+  return worst.back();
+}
+
+std::optional<double> FindContact(const Scene& scene, const std::vector<ViewMask>& masks, int own, const Reach& reach,
+                                  double slack, OutlineSample& sample) {
+  const Eigen::Vector3d& eye = masks[own].eye;
+  const double middle = (reach.center - eye).dot(sample.ray);
+  const double off = (eye + middle * sample.ray - reach.center).norm();
+  if (off >= reach.radius) return std::nullopt;
+  const double half = std::sqrt(reach.radius * reach.radius - off * off);
+  const double begin = std::max(middle - half, 1e-3 * reach.radius), end = middle + half;
+  if (begin >= end) return std::nullopt;
+  const auto at = [&](double t) { return OutsideBy(scene, masks, eye + t * sample.ray, own); };
+
+  const double step = (end - begin) / kSteps;
+  double least = kFar, depth = begin;
+  std::vector<double> outside(kSteps + 1, kFar);
+  for (int i = 0; i <= kSteps; ++i) {
+    outside[i] = at(begin + i * step).value_or(kFar);
+    if (outside[i] < least) {
+      least = outside[i];
+      depth = begin + i * step;
+    }
+  }
+  if (least >= kFar) return std::nullopt;
+  for (double finer = step / 2; finer > step / (1 << kFinerSteps); finer /= 2)
+    for (double t : {depth - finer, depth + finer})
+      if (const auto d = at(t); d && *d < least) {
+        least = *d;
+        depth = t;
+      }
+  // The ends lie between two steps: OutsideBy grows no faster than the way.
+  const auto edge = [&](double sign) {
+    double t = depth;
+    for (double width = step; width > step / 16; width /= 2)
+      while (t + sign * width > begin && t + sign * width < end) {
+        const auto d = at(t + sign * width);
+        if (!d || *d > least + slack) break;
+        t += sign * width;
+      }
+    return t;
+  };
+  sample.depth = depth;
+  sample.near = edge(-1);
+  sample.far = edge(1);
+  sample.depth = std::clamp((sample.near + sample.far) / 2, sample.near, sample.far);
+  return least;
+}
+
+}  // namespace glint::internal

@@ -1,0 +1,174 @@
+#include "silhouette/segment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/imgproc/detail/gcgraph.hpp>
+#include <vector>
+
+namespace glint::internal {
+namespace {
+
+constexpr int kColors = 28;             // clusters of a photograph's colours
+constexpr int kColorSamples = 6000;     // for finding them
+constexpr double kWindowRel = 0.10;     // of the raster: how far around a pixel colours are learned from
+constexpr double kGlobal = 0.03;        // weight of what is learned from everywhere, against around
+constexpr double kMaxEvidence = 3.5;    // of one pixel's colour, log of odds
+constexpr double kHintEvidence = 8;     // of a sparse point
+constexpr double kPriorEvidence = 1.5;  // against the object at the end of its reach
+constexpr double kEdge = 9;             // cost of a border without contrast
+constexpr double kMinEdge = 0.4;        // and with any contrast
+constexpr double kSure = 1e6;
+constexpr int kRounds = 3;
+constexpr int kShrink = 8;  // of the raster, for windows
+
+enum : uint8_t { kUnknown, kObject, kSurroundings };
+
+// Per pixel the number of the nearest of kColors typical colours.
+cv::Mat ColorLabels(const cv::Mat& lab) {
+  const int stride = std::max(1, static_cast<int>(lab.total() / kColorSamples));
+  std::vector<cv::Vec3f> samples;
+  for (size_t i = 0; i < lab.total(); i += stride) samples.push_back(lab.at<cv::Vec3f>(static_cast<int>(i)));
+  const int count = std::min<int>(kColors, static_cast<int>(samples.size()));
+  cv::Mat best, centers;
+  const uint64_t state = cv::theRNG().state;
+  cv::theRNG().state = 12345;
+  cv::kmeans(cv::Mat(samples).reshape(1), count, best, cv::TermCriteria(cv::TermCriteria::COUNT, 8, 0), 1,
+             cv::KMEANS_PP_CENTERS, centers);
+  cv::theRNG().state = state;
+  cv::Mat labels(lab.size(), CV_8U);
+  for (int y = 0; y < lab.rows; ++y)
+    for (int x = 0; x < lab.cols; ++x) {
+      const cv::Vec3f& c = lab.at<cv::Vec3f>(y, x);
+      double least = 1e30;
+      for (int k = 0; k < count; ++k) {
+        const float* m = centers.ptr<float>(k);
+        const double d = std::pow(c[0] - m[0], 2) + std::pow(c[1] - m[1], 2) + std::pow(c[2] - m[2], 2);
+        if (d < least) {
+          least = d;
+          labels.at<uint8_t>(y, x) = static_cast<uint8_t>(k);
+        }
+      }
+    }
+  return labels;
+}
+
+// Pixels marked in `mask`, counted around every pixel.
+cv::Mat CountAround(const cv::Mat& mask, double sigma) {
+  cv::Mat small, wide;
+  mask.convertTo(small, CV_32F, 1.0 / 255);
+  const cv::Size coarse((mask.cols + kShrink - 1) / kShrink, (mask.rows + kShrink - 1) / kShrink);
+  cv::resize(small, small, coarse, 0, 0, cv::INTER_AREA);
+  const double everywhere = cv::mean(small)[0];
+  cv::GaussianBlur(small, small, cv::Size(), sigma / kShrink, sigma / kShrink, cv::BORDER_CONSTANT);
+  small += kGlobal * everywhere;
+  cv::resize(small, wide, mask.size(), 0, 0, cv::INTER_LINEAR);
+  return wide;
+}
+
+// Log of the odds that a pixel is the object's by its colour, learned from pixels around it that are known.
+cv::Mat ColorEvidence(const cv::Mat& labels, const cv::Mat& known) {
+  const double sigma = kWindowRel * std::max(labels.cols, labels.rows);
+  const cv::Mat object = known == kObject, around = known == kSurroundings;
+  const cv::Mat all_object = CountAround(object, sigma), all_around = CountAround(around, sigma);
+  cv::Mat evidence(labels.size(), CV_32F, cv::Scalar(0));
+  constexpr double kLeast = 0.25 / kColors;  // share of a colour that was not seen
+  for (int k = 0; k < kColors; ++k) {
+    const cv::Mat here = labels == k;
+    const cv::Mat in = CountAround(here & object, sigma), out = CountAround(here & around, sigma);
+    for (int y = 0; y < labels.rows; ++y)
+      for (int x = 0; x < labels.cols; ++x) {
+        if (labels.at<uint8_t>(y, x) != k) continue;
+        const double p = in.at<float>(y, x) / std::max(1e-6f, all_object.at<float>(y, x));
+        const double q = out.at<float>(y, x) / std::max(1e-6f, all_around.at<float>(y, x));
+        evidence.at<float>(y, x) =
+            static_cast<float>(std::clamp(std::log((p + kLeast) / (q + kLeast)), -kMaxEvidence, kMaxEvidence));
+      }
+  }
+  return evidence;
+}
+
+constexpr std::array<std::array<int, 2>, 4> kNeighbors = {{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
+
+double SquaredContrast(const cv::Mat& lab, int x, int y, int nx, int ny) {
+  const cv::Vec3f d = lab.at<cv::Vec3f>(y, x) - lab.at<cv::Vec3f>(ny, nx);
+  return d.dot(d);
+}
+
+template <class Visit>
+void ForNeighbors(const cv::Mat& image, const Visit& visit) {
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x)
+      for (const auto& [dx, dy] : kNeighbors) {
+        const int nx = x + dx, ny = y + dy;
+        if (nx >= 0 && nx < image.cols && ny < image.rows) visit(x, y, nx, ny);
+      }
+}
+
+cv::Mat Cut(const cv::Mat& lab, const cv::Mat& odds) {
+  double sum = 0;
+  size_t pairs = 0;
+  ForNeighbors(lab, [&](int x, int y, int nx, int ny) {
+    sum += SquaredContrast(lab, x, y, nx, ny);
+    ++pairs;
+  });
+  const double beta = 1 / std::max(2 * sum / static_cast<double>(std::max<size_t>(1, pairs)), 1e-6);
+  const int num_nodes = static_cast<int>(lab.total());
+  cv::detail::GCGraph<float> graph(num_nodes, static_cast<int>(2 * pairs));
+  for (int i = 0; i < num_nodes; ++i) {
+    const float o = odds.at<float>(i / lab.cols, i % lab.cols);
+    graph.addTermWeights(graph.addVtx(), std::max(0.f, o), std::max(0.f, -o));
+  }
+  ForNeighbors(lab, [&](int x, int y, int nx, int ny) {
+    const double length = std::hypot(nx - x, ny - y);
+    const double cost = (kMinEdge + kEdge * std::exp(-beta * SquaredContrast(lab, x, y, nx, ny))) / length;
+    graph.addEdges(y * lab.cols + x, ny * lab.cols + nx, static_cast<float>(cost), static_cast<float>(cost));
+  });
+  graph.maxFlow();
+  cv::Mat mask(lab.size(), CV_8U);
+  for (int i = 0; i < num_nodes; ++i) mask.at<uint8_t>(i / lab.cols, i % lab.cols) = graph.inSourceSegment(i) ? 255 : 0;
+  return mask;
+}
+
+// The object's odds: colours, what is expected, sparse points, and what is sure.
+cv::Mat Odds(const SegmentInput& in, const cv::Mat& colors) {
+  cv::Mat odds = colors.clone();
+  for (int y = 0; y < odds.rows; ++y)
+    for (int x = 0; x < odds.cols; ++x) {
+      const double d = in.prior.at<float>(y, x);
+      const double off = std::max(0.0, d) / in.reach;
+      double o = odds.at<float>(y, x) - kPriorEvidence * off * off + kHintEvidence * in.hints.at<int8_t>(y, x);
+      if (d > in.reach) o = -kSure;
+      if (d < -in.core) o = kSure;
+      odds.at<float>(y, x) = static_cast<float>(o);
+    }
+  return odds;
+}
+
+}  // namespace
+
+cv::Mat Segment(const SegmentInput& input) {
+  cv::Mat lab;
+  input.image.convertTo(lab, CV_32F, 1.0 / 255);
+  cv::cvtColor(lab, lab, cv::COLOR_BGR2Lab);
+  cv::Mat quiet;
+  cv::GaussianBlur(lab, quiet, cv::Size(), 0.8);
+  lab = lab.reshape(3, lab.rows);
+  const cv::Mat labels = ColorLabels(quiet);
+  cv::Mat known(labels.size(), CV_8U, cv::Scalar(kUnknown)), mask;
+  for (int round = 0; round < kRounds; ++round) {
+    // At first what is sure, or nearly; then what was found, away from its outline.
+    for (int y = 0; y < known.rows; ++y)
+      for (int x = 0; x < known.cols; ++x) {
+        const double d = input.prior.at<float>(y, x);
+        uint8_t& k = known.at<uint8_t>(y, x);
+        if (round > 0) k = mask.at<uint8_t>(y, x) ? kObject : kSurroundings;
+        if (round == 0) k = d < -0.3 * input.core ? kObject : d > 0.6 * input.reach ? kSurroundings : kUnknown;
+      }
+    mask = Cut(quiet, Odds(input, ColorEvidence(labels, known)));
+  }
+  return mask;
+}
+
+}  // namespace glint::internal
