@@ -52,7 +52,7 @@ class BatchReader {
     project.out.clear();
     if (node.IsScalar()) {
       project.project = Path(node.Scalar());
-    } else {
+    } else if (node.IsMap()) {
       for (const auto& pair : node) {
         const std::string key = pair.first.IsScalar() ? pair.first.Scalar() : "";
         if (!Set(project, key, pair.second))
@@ -61,6 +61,7 @@ class BatchReader {
     }
     if (project.project.empty()) Problem(node, "expected a project: its folder");
     if (project.name.empty()) project.name = FolderName(project.project);
+    if (project.name.empty()) Problem(node, "expected a name: this folder has none");
     if (project.out.empty()) project.out = (common.out.empty() ? Path("glint") : common.out) / project.name;
     const auto [other, is_new] = by_out_.emplace(project.out.lexically_normal().string(), project.name);
     if (!is_new)
@@ -107,7 +108,9 @@ class BatchReader {
   fs::path Path(const std::string& text) const {
     return text.empty() ? fs::path() : (file_.parent_path() / text).lexically_normal();
   }
-  static std::string FolderName(const fs::path& path) {
+  static std::string FolderName(const fs::path& folder) {
+    if (folder.empty()) return "";
+    const fs::path path = fs::absolute(folder).lexically_normal();  // "." and ".." have names, too
     return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
   }
   void Problem(const YAML::Node& node, const std::string& what) {

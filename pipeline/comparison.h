@@ -1,14 +1,11 @@
 // A mesh against the truth, as a whole and by regions: what `glint compare` prints.
 #pragma once
 
-#include <Eigen/Geometry>
-#include <filesystem>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "colmap/scene.h"
 #include "geometry/triangle_mesh.h"
-#include "light/light.h"
 #include "metrics/compare.h"
 #include "pipeline/error_map.h"
 
@@ -27,15 +24,6 @@ struct Candidate {
   MeshComparison comparison;
   ErrorHistogram histogram;  // of the signed distances of its vertices
 };
-
-// x_in_reference = scale * R * x + t, read from JSON with the keys "scale", "R" (3 rows of 3) and "t".
-// Throws InputError naming file and key.
-Eigen::Affine3d ReadSimilarity(const std::filesystem::path& path);
-
-// The same things in another world. A camera's own frame grows with the world, so that its pixels stay.
-void Transform(const Eigen::Affine3d& similarity, TriangleMesh& mesh);
-void Transform(const Eigen::Affine3d& similarity, Scene& scene);
-void Transform(const Eigen::Affine3d& similarity, std::vector<Light>& lights);
 
 // Unit vertex normals weighted by the incident angles, where the mesh has none of its own.
 void EnsureNormals(TriangleMesh& mesh);

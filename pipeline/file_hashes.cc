@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -24,6 +25,8 @@ using Json = nlohmann::json;
 
 // A file that changes again this soon after it was read may keep its time of change: clocks tick coarsely.
 constexpr int64_t kTickNs = 2'000'000'000;
+// What fits into nanoseconds since 1970, with room for a tick: a file may claim to be of any year.
+constexpr int64_t kMaxSeconds = 9'000'000'000;
 
 std::string Text(const XXH128_hash_t& hash) { return fmt::format("{:016x}{:016x}", hash.high64, hash.low64); }
 
@@ -38,6 +41,10 @@ std::string HashOfContents(const fs::path& file) {
   }
   if (!in.is_open() || in.bad()) throw InputError(file.string(), "", "cannot be read");
   return Text(XXH3_128bits_digest(state.get()));
+}
+
+int64_t ChangedNs(const timespec& time) {
+  return std::clamp<int64_t>(time.tv_sec, -kMaxSeconds, kMaxSeconds) * 1'000'000'000 + time.tv_nsec;
 }
 
 int64_t NowNs() {
@@ -107,14 +114,14 @@ std::string FileHashes::Of(const fs::path& file) {
   Entry entry;
   entry.size = static_cast<uint64_t>(status.st_size);
   entry.inode = status.st_ino;
-  entry.changed_ns = int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+  entry.changed_ns = ChangedNs(status.st_mtim);
   entry.read_ns = NowNs();
   const std::string key = fs::absolute(file).lexically_normal().string();
   {
     std::lock_guard lock(mutex_);
     const auto known = known_.find(key);
     if (known != known_.end() && known->second.size == entry.size && known->second.inode == entry.inode &&
-        known->second.changed_ns == entry.changed_ns && entry.changed_ns < known->second.read_ns - kTickNs)
+        known->second.changed_ns == entry.changed_ns && entry.changed_ns + kTickNs < known->second.read_ns)
       return known->second.hash;
   }
   entry.hash = HashOfContents(file);

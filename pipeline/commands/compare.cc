@@ -24,6 +24,7 @@
 #include "pipeline/comparison.h"
 #include "pipeline/error_map.h"
 #include "pipeline/picture.h"
+#include "pipeline/similarity.h"
 #include "pipeline/terminal.h"
 #include "pipeline/workspace.h"
 

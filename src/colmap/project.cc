@@ -103,6 +103,7 @@ struct Parents {
 };
 struct FolderChoice {
   fs::path folder;
+  fs::path parent;  // of the folders to search, the one that it is in
   size_t num_found = 0;
 };
 FolderChoice ChooseFolder(const Parents& parents, const std::vector<const char*>& candidates,
@@ -117,26 +118,42 @@ FolderChoice ChooseFolder(const Parents& parents, const std::vector<const char*>
           names.begin(), names.end(), [&](const auto& name) { return IsFile(folder / (name + suffix)); }));
       // Folders above the project and the parent itself, candidate "", count only if the files are there.
       const bool is_first = choice.folder.empty() && *candidate && i < parents.num_inside;
-      if (is_first || found > choice.num_found) choice = {folder, found};
+      if (is_first || found > choice.num_found) choice = {folder, parent, found};
     }
   }
   return choice;
 }
 
-// The model's folder and the folders above it: those inside the project, then a few more, for a project given as
-// "sparse" or "sparse/0".
+// The folder that a project's parts lie in. It is above the one that was given where that is the model: "p" for
+// "p/sparse/0", "p/sparse" and "p/0".
+fs::path TopFolder(const fs::path& root, const fs::path& model) {
+  fs::path top = root;
+  if (top == model && top.filename() != "sparse") top = top.parent_path();
+  if (top.filename() == "sparse") top = top.parent_path();
+  return top;
+}
+
+// The model's folder and the folders above it up to the one that the project's parts lie in. What is farther up belongs
+// to others: many objects have an IMG_0001.JPG.
 Parents ParentsToSearch(const fs::path& project, const fs::path& model) {
-  constexpr size_t kMaxLevelsAbove = 2;
   Parents parents;
-  fs::path folder = AbsolutePath(model);
-  const fs::path root = AbsolutePath(project);
-  while (parents.num_inside == 0 || parents.folders.size() < parents.num_inside + kMaxLevelsAbove) {
+  const fs::path root = AbsolutePath(project), top = TopFolder(root, AbsolutePath(model));
+  for (fs::path folder = AbsolutePath(model);; folder = folder.parent_path()) {
     parents.folders.push_back(folder);
     if (folder == root) parents.num_inside = parents.folders.size();
-    if (folder == folder.parent_path()) break;
-    folder = folder.parent_path();
+    if (folder == top || folder == folder.parent_path()) break;
   }
   return parents;
+}
+
+// Masks are beside the images, or nearer to the model.
+Parents ParentsOfMasks(const Parents& parents, const fs::path& beside_images) {
+  Parents result = parents;
+  const auto found = std::find(result.folders.begin(), result.folders.end(), beside_images);
+  if (found != result.folders.end()) result.folders.erase(found + 1, result.folders.end());
+  result.folders.insert(result.folders.begin(), beside_images);
+  ++result.num_inside;
+  return result;
 }
 
 }  // namespace
@@ -165,19 +182,20 @@ ProjectPaths FindProject(const fs::path& project, const fs::path& images_overrid
   const auto parents = ParentsToSearch(paths.root, paths.model);
   paths.images = images_override;
   paths.images_given = !images_override.empty();
-  if (paths.images.empty()) {
+  fs::path beside_images;
+  if (paths.images_given) {
+    beside_images = AbsolutePath(paths.images).parent_path();
+  } else {
     const std::vector<const char*> usual_names = {"images", "input", "imgs", "image", "photos", "rgb", ""};
-    paths.images = ChooseFolder(parents, usual_names, names, "").folder;
+    const FolderChoice choice = ChooseFolder(parents, usual_names, names, "");
+    paths.images = choice.folder;
+    beside_images = choice.parent;
     if (paths.images.empty()) paths.notes.push_back("no folder with the model's images was found");
   }
   paths.masks = masks_override;
   paths.masks_given = !masks_override.empty();
   if (paths.masks.empty()) {
-    auto mask_parents = parents;
-    if (!paths.images.empty()) {
-      mask_parents.folders.insert(mask_parents.folders.begin(), AbsolutePath(paths.images).parent_path());
-      ++mask_parents.num_inside;
-    }
+    const Parents mask_parents = paths.images.empty() ? parents : ParentsOfMasks(parents, beside_images);
     const FolderChoice choice = ChooseFolder(mask_parents, {"masks", "mask"}, names, ".png");
     if (choice.num_found > 0) {
       paths.masks = choice.folder;

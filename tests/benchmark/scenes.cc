@@ -23,6 +23,7 @@
 #include "pipeline/artifacts.h"
 #include "pipeline/comparison.h"
 #include "pipeline/run.h"
+#include "pipeline/similarity.h"
 #include "pipeline/terminal.h"
 #include "synthetic/write_project.h"
 

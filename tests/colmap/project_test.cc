@@ -119,6 +119,30 @@ TEST(Project, MasksNamedOtherwiseAreMentioned) {
   EXPECT_THAT(paths.notes, testing::ElementsAre(HasSubstr(".jpg.png")));
 }
 
+TEST(Project, WhatLiesAboveItIsNotItsOwn) {
+  const TemporaryFolder folder;
+  // Many objects in one folder, and somebody else's photographs and masks of the same names beside them.
+  WriteImages(folder / "images");
+  WriteImages(folder / "masks", ".png");
+  WriteImages(folder / "scans/masks", ".png");
+  WriteModel(SmallModel(), folder / "scans/mug/sparse/0");
+  for (const char* given : {"scans/mug", "scans/mug/sparse", "scans/mug/sparse/0"}) {
+    const ProjectPaths paths = FindProject(folder / given);
+    EXPECT_TRUE(paths.images.empty()) << given << ": " << paths.images;
+    EXPECT_TRUE(paths.masks.empty()) << given << ": " << paths.masks;
+  }
+  WriteImages(folder / "scans/mug");
+  WriteModel(SmallModel(), folder / "scans/cup");
+  WriteImages(folder / "scans/cup");
+  for (const char* given : {"scans/mug", "scans/mug/sparse", "scans/mug/sparse/0", "scans/cup"}) {
+    const ProjectPaths paths = FindProject(folder / given);
+    EXPECT_FALSE(paths.images.empty()) << given;
+    EXPECT_TRUE(paths.masks.empty()) << given << ": " << paths.masks;
+  }
+  WriteImages(folder / "scans/mug/masks", ".png");
+  EXPECT_TRUE(fs::equivalent(FindProject(folder / "scans/mug/sparse/0").masks, folder / "scans/mug/masks"));
+}
+
 TEST(Project, WithoutImagesIsFoundWithANote) {
   const TemporaryFolder folder;
   WriteModel(SmallModel(), folder / "sparse/0");

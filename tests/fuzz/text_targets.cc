@@ -1,7 +1,10 @@
-// JSON and YAML: lights, highlights and flags of the workspace, configuration.
+// JSON and YAML: lights, highlights and what else the workspace keeps, configuration, lists of projects.
 #include "light/light_io.h"
 #include "pipeline/artifacts.h"
+#include "pipeline/batch_file.h"
 #include "pipeline/config_file.h"
+#include "pipeline/file_hashes.h"
+#include "pipeline/similarity.h"
 #include "pipeline/stage_record.h"
 #include "pipeline/summary_json.h"
 #include "tests/fuzz/scratch.h"
@@ -158,6 +161,46 @@ std::vector<std::string> ContactSeeds() {
   return {BytesOf(path)};
 }
 
+void RunBatch(std::string_view bytes) {
+  Try([&] {
+    for (const BatchProject& p : ReadBatchFile(ScratchFile("batch.yaml", bytes)))
+      if (p.project.empty() || p.name.empty() || p.out.empty()) std::abort();
+  });
+}
+
+std::vector<std::string> BatchSeeds() {
+  return {
+      "out: results\nset: {refine.levels: 3}\nprojects:\n  - scans/hood\n"
+      "  - {project: scans/vase, name: vase-flash, config: flash.yaml, set: {a.b: 1}}\n",
+      "lights: l.json\nprojects: [{project: a, out: b, mesh: c, images: d, masks: e}, a/]\n"};
+}
+
+// The hash of a file beside it, whatever is remembered.
+void RunHashes(std::string_view bytes) {
+  const auto file = ScratchFile("hashed", "x");
+  FileHashes hashes(ScratchFile("hashes.json", bytes));
+  if (hashes.Of(file).empty()) std::abort();
+  hashes.Save();
+}
+
+std::vector<std::string> HashesSeeds() {
+  FileHashes hashes(Scratch::Folder() / "none.json");
+  hashes.Of(ScratchFile("hashed", "x"));
+  hashes.Save();
+  return {BytesOf(Scratch::Folder() / "none.json")};
+}
+
+void RunSimilarity(std::string_view bytes) {
+  const auto path = ScratchFile("similarity.json", bytes);
+  Try([&] {
+    if (!ReadSimilarity(path).matrix().allFinite()) std::abort();
+  });
+}
+
+std::vector<std::string> SimilaritySeeds() {
+  return {R"({"scale": 2, "R": [[0, -1, 0], [1, 0, 0], [0, 0, 1]], "t": [1, -2, 0.5]})"};
+}
+
 std::vector<std::string> FlagSeeds() { return {"0101\n"}; }
 
 }  // namespace
@@ -169,6 +212,9 @@ std::vector<Target> TextTargets() {
           {"highlights_json", RunHighlights, HighlightSeeds},
           {"stage_record", RunStageRecord, StageRecordSeeds},
           {"contacts_json", RunContacts, ContactSeeds},
+          {"batch_yaml", RunBatch, BatchSeeds},
+          {"hashes_json", RunHashes, HashesSeeds},
+          {"similarity_json", RunSimilarity, SimilaritySeeds},
           {"flags", RunFlags, FlagSeeds}};
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 
 #include "core/error.h"
@@ -66,9 +67,22 @@ TEST_F(FileHashesTest, RemembersWhatHasNotBeenTouched) {
 TEST_F(FileHashesTest, AnUnsoundMemoryOnlyCostsTime) {
   Write("a", "one");
   const std::string hash = FileHashes(memory_).Of(root_ / "a");
-  for (const char* text : {"", "{", "[1]", "{\"/x\": [1, 2]}", "{\"/x\": [1, -2, \"y\", {}, 4]}"}) {
+  for (const char* text : {"", "{", "[1]", "{\"/x\": [1, 2]}", "{\"/x\": [1, -2, \"y\", {}, 4]}",
+                           "{\"/x\": [1, 2, 3, -9223372036854775808, \"\"]}"}) {
     Write("hashes.json", text);
     EXPECT_EQ(FileHashes(memory_).Of(root_ / "a"), hash) << text;
+  }
+}
+
+TEST_F(FileHashesTest, AnyTimeOfChangeWillDo) {
+  Write("a", "one");
+  const std::string hash = FileHashes(memory_).Of(root_ / "a");
+  // Not every file system keeps such a year; then it is a nearer one.
+  for (const char* seconds : {"17000000000", "-17000000000"}) {
+    const std::string command = std::string("touch -d @") + seconds + " '" + (root_ / "a").string() + "' 2> /dev/null";
+    if (std::system(command.c_str()) == 0) {
+      EXPECT_EQ(FileHashes(memory_).Of(root_ / "a"), hash) << seconds;
+    }
   }
 }
 

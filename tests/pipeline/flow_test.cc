@@ -144,7 +144,8 @@ TEST_F(BatchTest, EveryProblemOfTheFileIsSaidBeforeAnythingRuns) {
             HasSubstr("batch.yaml:4: p and p would both write into"), HasSubstr("batch.yaml:5: expected a project"),
             HasSubstr("batch.yaml:6: name"), HasSubstr("batch.yaml:6: set")));
   EXPECT_FALSE(fs::exists(folder_ / "glint"));
-  for (const char* text : {"", "projects: []\n", "- p\n", "projects: [", "projects: {a: b}\n"}) {
+  for (const char* text :
+       {"", "projects: []\n", "- p\n", "projects: [", "projects: {a: b}\n", "projects: [[p]]\n", "projects: [/]\n"}) {
     Write("batch.yaml", text);
     EXPECT_EQ(RunGlint({"run", "--batch", Path("batch.yaml")}).exit_code, 2) << text;
   }
