@@ -7,6 +7,7 @@
 
 #include "colmap/model.h"
 #include "tests/pipeline/program.h"
+#include "tests/support/shared_folder.h"
 
 namespace glint {
 namespace {
@@ -19,18 +20,13 @@ using ::testing::Not;
 // A small project, rendered once, which every test spoils in its own way.
 class BadInput : public ProgramTest {
  protected:
-  static void SetUpTestSuite() {
-    sound_ = new fs::path(fs::path(::testing::TempDir()) / "glint_bad_input_project");
-    fs::remove_all(*sound_);
+  static void SetUpTestSuite() { sound_ = testing_support::SharedFolder("bad_input_test", Make); }
+  static void Make(const fs::path& folder) {
     const ProgramResult result =
-        RunGlint({"synth", "sphere", "-o", sound_->string(), "--views", "8", "--size", "160x120", "-q"});
+        RunGlint({"synth", "sphere", "-o", folder.string(), "--views", "8", "--size", "160x120", "-q"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
   }
-  static void TearDownTestSuite() {
-    fs::remove_all(*sound_);
-    delete sound_;
-  }
-  BadInput() { fs::copy(*sound_, folder_ / "p", fs::copy_options::recursive); }
+  BadInput() { fs::copy(sound_, folder_ / "p", fs::copy_options::recursive); }
 
   fs::path ModelFolder() const { return folder_ / "p/sparse/0"; }
 
@@ -64,9 +60,8 @@ class BadInput : public ProgramTest {
     ExpectNoResults(folder_ / "out");
   }
 
-  static fs::path* sound_;
+  static inline fs::path sound_;
 };
-fs::path* BadInput::sound_ = nullptr;
 
 TEST_F(BadInput, MissingProject) {
   // No model, and no photographs to make one from.
@@ -130,7 +125,7 @@ TEST_F(BadInput, NumbersThatAreNotFinite) {
   ChangeModel([](Model& model) { model.images[3].cam_from_world.translation.y() = std::nan(""); });
   ExpectRefused(AllOf(HasSubstr("images.bin"), HasSubstr("image 4 of 8")));
   fs::remove_all(folder_ / "p");
-  fs::copy(*sound_, folder_ / "p", fs::copy_options::recursive);
+  fs::copy(sound_, folder_ / "p", fs::copy_options::recursive);
   uint64_t id = 0;
   ChangeModel([&](Model& model) {
     id = model.points[7].id;

@@ -7,6 +7,7 @@
 
 #include "colmap/model.h"
 #include "tests/pipeline/program.h"
+#include "tests/support/shared_folder.h"
 
 namespace glint {
 namespace {
@@ -18,22 +19,17 @@ using ::testing::Not;
 
 class WildModel : public ProgramTest {
  protected:
-  static void SetUpTestSuite() {
-    sound_ = new fs::path(fs::path(::testing::TempDir()) / "glint_wild_model");
-    fs::remove_all(*sound_);
+  static void SetUpTestSuite() { sound_ = testing_support::SharedFolder("bad_models_test", Make); }
+  static void Make(const fs::path& folder) {
     const ProgramResult result =
-        RunGlint({"synth", "sphere", "-o", sound_->string(), "--views", "6", "--size", "160x120", "-q"});
+        RunGlint({"synth", "sphere", "-o", folder.string(), "--views", "6", "--size", "160x120", "-q"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
-  }
-  static void TearDownTestSuite() {
-    fs::remove_all(*sound_);
-    delete sound_;
   }
   WildModel() { Restore(); }
 
   void Restore() const {
     fs::remove_all(folder_ / "p");
-    fs::copy(*sound_, folder_ / "p", fs::copy_options::recursive);
+    fs::copy(sound_, folder_ / "p", fs::copy_options::recursive);
   }
 
   template <class Change>
@@ -61,9 +57,8 @@ class WildModel : public ProgramTest {
     EXPECT_THAT(result.err, AllOf(HasSubstr("warning"), message));
   }
 
-  static fs::path* sound_;
+  static inline fs::path sound_;
 };
-fs::path* WildModel::sound_ = nullptr;
 
 fs::path Real(const std::string& name) { return fs::path(GLINT_SOURCE_DIR) / "../shared/data/real" / name; }
 

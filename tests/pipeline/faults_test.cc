@@ -8,6 +8,7 @@
 #include "io/mesh_io.h"
 #include "io/vdb_io.h"
 #include "tests/pipeline/program.h"
+#include "tests/support/shared_folder.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kIsSanitized = true;  // a sanitizer's runtime needs all address space and wants to be loaded first
@@ -25,43 +26,36 @@ using ::testing::Not;
 
 class Faults : public ProgramTest {
  protected:
-  static void SetUpTestSuite() {
-    sound_ = new fs::path(fs::path(::testing::TempDir()) / "glint_faults_project");
-    fs::remove_all(*sound_);
+  static void SetUpTestSuite() { sound_ = testing_support::SharedFolder("faults_test", Make); }
+  static void Make(const fs::path& folder) {
     const ProgramResult result =
-        RunGlint({"synth", "sphere", "-o", sound_->string(), "--views", "8", "--size", "160x120", "-q"});
+        RunGlint({"synth", "sphere", "-o", folder.string(), "--views", "8", "--size", "160x120", "-q"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     // A coarse surface: what is tested is around the run, not in it.
-    const std::string field = (*sound_ / "field.vdb").string(), mesh = (*sound_ / "coarse.ply").string();
-    ASSERT_EQ(RunGlint({"sdf", (*sound_ / "truth/mesh.ply").string(), "--voxel-rel", "0.02", "-o", field}).exit_code,
-              0);
+    const std::string field = (folder / "field.vdb").string(), mesh = (folder / "coarse.ply").string();
+    ASSERT_EQ(RunGlint({"sdf", (folder / "truth/mesh.ply").string(), "--voxel-rel", "0.02", "-o", field}).exit_code, 0);
     ASSERT_EQ(RunGlint({"mesh", field, "-o", mesh}).exit_code, 0);
-  }
-  static void TearDownTestSuite() {
-    fs::remove_all(*sound_);
-    delete sound_;
   }
 
   static std::vector<std::string> Arguments(const std::string& project, const std::string& out) {
     return {"run",      project,
             "-o",       out,
-            "--mesh",   (*sound_ / "coarse.ply").string(),
-            "--lights", (*sound_ / "truth/lights.json").string(),
+            "--mesh",   (sound_ / "coarse.ply").string(),
+            "--lights", (sound_ / "truth/lights.json").string(),
             "--set",    "refine.levels=1",
             "--set",    "refine.max_iterations=1",
             "--set",    "refine.voxel_rel=0.03"};
   }
-  static std::vector<std::string> Arguments(const std::string& out) { return Arguments(sound_->string(), out); }
+  static std::vector<std::string> Arguments(const std::string& out) { return Arguments(sound_.string(), out); }
 
   // A project of its own, to be spoilt.
   fs::path Copied() const {
-    fs::copy(*sound_, folder_ / "p", fs::copy_options::recursive);
+    fs::copy(sound_, folder_ / "p", fs::copy_options::recursive);
     return folder_ / "p";
   }
 
-  static fs::path* sound_;
+  static inline fs::path sound_;
 };
-fs::path* Faults::sound_ = nullptr;
 
 // Every file under its final name is whole, and no other is left.
 void ExpectOnlyWholeFiles(const fs::path& out) {
@@ -186,7 +180,7 @@ TEST_F(Faults, MasksAreNotWrittenThroughLinks) {
   fs::create_directories(folder_ / "elsewhere");
   fs::create_directories(folder_ / "masks");
   fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "masks/overlays");
-  const ProgramResult result = RunGlint({"detect", sound_->string(), "-o", Path("masks"), "--overlays"});
+  const ProgramResult result = RunGlint({"detect", sound_.string(), "-o", Path("masks"), "--overlays"});
   EXPECT_EQ(result.exit_code, 2) << result.err;
   EXPECT_TRUE(fs::is_empty(folder_ / "elsewhere"));
 }

@@ -13,6 +13,7 @@
 #include "pipeline/image_stages.h"
 #include "tests/colmap/fake_colmap.h"
 #include "tests/pipeline/program.h"
+#include "tests/support/shared_folder.h"
 
 namespace glint {
 namespace {
@@ -29,20 +30,15 @@ bool HasColmap() { return std::system("command -v colmap > /dev/null 2>&1") == 0
 
 class FromPhotographs : public ProgramTest {
  protected:
-  static void SetUpTestSuite() {
-    project_ = new fs::path(fs::path(::testing::TempDir()) / "glint_photographs_project");
-    fs::remove_all(*project_);
+  static void SetUpTestSuite() { project_ = testing_support::SharedFolder("photographs_test", Make); }
+  static void Make(const fs::path& folder) {
     const ProgramResult result =
-        RunGlint({"synth", "ellipsoid", "-o", project_->string(), "--views", "12", "--size", "320x240", "-q"});
+        RunGlint({"synth", "ellipsoid", "-o", folder.string(), "--views", "12", "--size", "320x240", "-q"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
   }
-  static void TearDownTestSuite() {
-    fs::remove_all(*project_);
-    delete project_;
-  }
   FromPhotographs() : colmap_(folder_ / "bin") {
-    fs::copy(*project_ / "images", folder_ / "photographs", fs::copy_options::recursive);
-    fs::copy(*project_ / "sparse", colmap_.Model(), fs::copy_options::recursive);
+    fs::copy(project_ / "images", folder_ / "photographs", fs::copy_options::recursive);
+    fs::copy(project_ / "sparse", colmap_.Model(), fs::copy_options::recursive);
   }
 
   ProgramResult RunOn(const std::string& what, const std::vector<std::string>& more = {},
@@ -69,15 +65,14 @@ class FromPhotographs : public ProgramTest {
     }
   }
 
-  static fs::path* project_;
+  static inline fs::path project_;
   FakeColmap colmap_;
 };
-fs::path* FromPhotographs::project_ = nullptr;
 
 TEST_F(FromPhotographs, OneCommandToTheMesh) {
-  Write("photographs/cut.jpg", ReadText(*project_ / "images/view_000.jpg").substr(0, 3000));
+  Write("photographs/cut.jpg", ReadText(project_ / "images/view_000.jpg").substr(0, 3000));
   const std::vector<std::string> more = {
-      "--lights", (*project_ / "truth/lights.json").string(), "--set", "output.obj=true", "--set", "output.glb=true"};
+      "--lights", (project_ / "truth/lights.json").string(), "--set", "output.obj=true", "--set", "output.glb=true"};
   const ProgramResult result = RunOn("photographs", more);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, AllOf(HasSubstr("left out"), HasSubstr("cut.jpg"), HasSubstr("12 of 12 images registered")));

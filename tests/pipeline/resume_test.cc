@@ -136,10 +136,8 @@ TEST_F(Resume, TheSameAtAnyNumberOfThreadsAndInPieces) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
   };
   run_well("one", {"--threads", "1"});
-  for (const char* threads : {"2", "4"}) {
-    run_well(threads, {"--threads", threads});
-    ExpectSameResults("one", threads);
-  }
+  run_well("four", {"--threads", "4"});
+  ExpectSameResults("one", "four");
   for (const char* stage : {"seed", "detect", "lights", "gate", "refine"})
     run_well("pieces", {"--until", stage, "--threads", "3"});
   run_well("pieces", {});

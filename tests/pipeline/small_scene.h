@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "tests/pipeline/program.h"
+#include "tests/support/shared_folder.h"
 
 namespace glint {
 
 class SmallScene : public ProgramTest {
  protected:
   SmallScene() {
-    const ProgramResult synth =
-        RunGlint({"synth", "sphere", "-o", Path("p"), "--views", "8", "--size", "160x120", "--no-place", "-q"});
-    EXPECT_EQ(synth.exit_code, 0) << synth.err;
+    std::filesystem::copy(testing_support::SharedFolder("small_scene", Make), folder_ / "p",
+                          std::filesystem::copy_options::recursive);
     Write("c.yaml", "refine:\n  voxel_rel: 0.03\n  levels: 1\n");
     Write("ball.off", CoarseBall());
   }
@@ -33,6 +33,12 @@ class SmallScene : public ProgramTest {
   }
 
  private:
+  static void Make(const std::filesystem::path& folder) {
+    const ProgramResult synth =
+        RunGlint({"synth", "sphere", "-o", folder.string(), "--views", "8", "--size", "160x120", "--no-place", "-q"});
+    EXPECT_EQ(synth.exit_code, 0) << synth.err;
+  }
+
   // An octahedron, each face in 16 triangles, on the sphere that the scene shows.
   static std::string CoarseBall() {
     constexpr int kSteps = 4;

@@ -5,6 +5,7 @@
 #include "io/mesh_io.h"
 #include "metrics/compare.h"
 #include "tests/pipeline/program.h"
+#include "tests/support/shared_folder.h"
 
 namespace glint {
 namespace {
@@ -19,47 +20,42 @@ struct Units {
 
 class InOtherUnits : public ProgramTest, public ::testing::WithParamInterface<Units> {
  protected:
-  static void SetUpTestSuite() {
-    shared_ = new fs::path(fs::path(::testing::TempDir()) / "glint_units_test");
-    fs::remove_all(*shared_);
+  static void SetUpTestSuite() { shared_ = testing_support::SharedFolder("units_test", Make); }
+  static void Make(const fs::path& folder) {
+    shared_ = folder;
     const ProgramResult synth =
-        RunGlint({"synth", "ellipsoid", "-o", (*shared_ / "p").string(), "--views", "16", "--size", "240x180", "-q"});
+        RunGlint({"synth", "ellipsoid", "-o", (folder / "p").string(), "--views", "16", "--size", "240x180", "-q"});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
-    const ProgramResult run = RunGlint(Arguments(*shared_ / "p", *shared_ / "out"));
+    const ProgramResult run = RunGlint(Arguments(folder / "p", folder / "out"));
     ASSERT_EQ(run.exit_code, 0) << run.err;
-  }
-  static void TearDownTestSuite() {
-    fs::remove_all(*shared_);
-    delete shared_;
   }
 
   // The lights are distant: their directions hold in any unit.
   static std::vector<std::string> Arguments(const fs::path& project, const fs::path& out) {
     return {"run",      project.string(),
             "-o",       out.string(),
-            "--lights", (*shared_ / "p/truth/lights.json").string(),
+            "--lights", (shared_ / "p/truth/lights.json").string(),
             "--set",    "refine.voxel_rel=0.02",
             "--set",    "output.overlays=false"};
   }
 
-  static fs::path* shared_;
+  static inline fs::path shared_;
 };
-fs::path* InOtherUnits::shared_ = nullptr;
 
 TEST_P(InOtherUnits, TheSameSurface) {
   const Eigen::Vector3d offset = GetParam().offset * Eigen::Vector3d(1, -1, 0.5);
-  Model model = ReadModel(*shared_ / "p/sparse/0");
+  Model model = ReadModel(shared_ / "p/sparse/0");
   for (Point3D& point : model.points) point.xyz = GetParam().scale * point.xyz + offset;
   for (Image& image : model.images) {
     Rigid3d& pose = image.cam_from_world;
     pose.translation = GetParam().scale * pose.translation - pose.rotation * offset;
   }
   WriteModel(model, folder_ / "p/sparse/0");
-  fs::create_directory_symlink(*shared_ / "p/images", folder_ / "p/images");
+  fs::create_directory_symlink(shared_ / "p/images", folder_ / "p/images");
   const ProgramResult run = RunGlint(Arguments(folder_ / "p", folder_ / "out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
 
-  const TriangleMesh expected = ReadMesh(*shared_ / "out/mesh.ply");
+  const TriangleMesh expected = ReadMesh(shared_ / "out/mesh.ply");
   TriangleMesh found = ReadMesh(folder_ / "out/mesh.ply");
   for (Eigen::Vector3d& v : found.vertices) v = (v - offset) / GetParam().scale;
   const MeshComparison comparison = CompareMeshes(found, expected);
