@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "core/random_bits.h"
 
 namespace glint {
 namespace {
@@ -15,9 +16,11 @@ constexpr int kAxisA[3] = {0, 0, 1}, kAxisB[3] = {1, 2, 2};  // of the three mix
 constexpr float kMixed = static_cast<float>(M_SQRT2);        // ‖H‖² counts each mixed derivative twice
 constexpr int32_t kNone = BandTopology::kNone;
 
+float Sign(uint64_t bits, int k) { return (bits >> k & 1) != 0 ? 1.0f : -1.0f; }
+
 // Of a set of differences: 1 for those in it.
-constexpr std::array<std::array<float, 7>, 128> MakeFlags() {
-  std::array<std::array<float, 7>, 128> flags{};
+constexpr std::array<std::array<float, 8>, 128> MakeFlags() {
+  std::array<std::array<float, 8>, 128> flags{};
   for (int set = 0; set < 128; ++set)
     for (int k = 0; k < 7; ++k) flags[set][k] = static_cast<float>(set >> k & 1);
   return flags;
@@ -71,7 +74,7 @@ void BandOperator::TakeDifferences(const std::vector<T>& phi, std::vector<Differ
     const T here = phi[i];
     std::array<int32_t, 3> next;
     std::array<T, 3> ahead;
-    Differences d;
+    Differences d{};
     T along_normal = 0;
     for (int axis = 0; axis < 3; ++axis) {
       next[axis] = or_self(topology_.Neighbor(i, axis, 1));
@@ -99,22 +102,52 @@ void BandOperator::WeighDifferences(const std::vector<Differences>& differences,
   weighted[0] = {};
   ParallelFor(topology_.size(), kGrain, [&](size_t i) {
     const Differences& d = differences[i];
-    std::array<float, 6> w;
-    for (int k = 0; k < 6; ++k) w[k] = smoothness * d[k];
+    Differences sum{};  // of the differences to the neighbours'
     if (change > 0)
       for (int side = 0; side < 6; ++side) {
         const int32_t v = topology_.Neighbor(i, side / 2, side % 2);
         const size_t other = v < 0 ? i : static_cast<size_t>(v);
         const auto& both = kFlags[present_[i] & present_[other]];
-        for (int k = 0; k < 6; ++k) w[k] += change * both[k] * (d[k] - differences[other][k]);
+        const Differences& next = differences[other];
+        for (int k = 0; k < 8; ++k) sum[k] += both[k] * (d[k] - next[k]);
       }
-    Weighted& out = weighted[i + 1];
-    for (int axis = 0; axis < 3; ++axis) {
-      const float along = 0.5f * normal * weights_.n[i][axis] * d[6];
-      out.from_minus[axis] = w[axis] - along;
-      out.from_plus[axis] = w[axis] + along;
-      out.mixed[axis] = kMixed * w[3 + axis];
-    }
+    Differences w;
+    for (int k = 0; k < 8; ++k) w[k] = smoothness * d[k] + change * sum[k];
+    weighted[i + 1] = LayOut(w, normal * d[6], i);
+  });
+}
+
+BandOperator::Weighted BandOperator::LayOut(const Differences& weighted_bends, float weighted_normal, size_t i) const {
+  Weighted out;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float along = 0.5f * weights_.n[i][axis] * weighted_normal;
+    out.from_minus[axis] = weighted_bends[axis] - along;
+    out.from_plus[axis] = weighted_bends[axis] + along;
+    out.mixed[axis] = kMixed * weighted_bends[3 + axis];
+  }
+  return out;
+}
+
+void BandOperator::WeighNoise(uint64_t seed, std::vector<Weighted>& weighted) const {
+  const float smoothness = std::sqrt(static_cast<float>(weights_.smoothness));
+  const float change = std::sqrt(static_cast<float>(weights_.bend_change));
+  const float normal = std::sqrt(static_cast<float>(weights_.normal));
+  weighted[0] = {};
+  ParallelFor(topology_.size(), kGrain, [&](size_t i) {
+    const uint64_t bits = RandomBits(seed, i);
+    const auto& flag = kFlags[present_[i]];
+    Differences w{};
+    for (int k = 0; k < 6; ++k) w[k] = smoothness * flag[k] * Sign(bits, k);
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        const int32_t v = topology_.Neighbor(i, axis, side);
+        if (v == kNone) continue;
+        // The pair's signs are those of its voxel on the minus side.
+        const uint64_t pair = side == 1 ? bits : RandomBits(seed, static_cast<size_t>(v));
+        const auto& both = kFlags[present_[i] & present_[v]];
+        for (int k = 0; k < 6; ++k) w[k] += (side == 1 ? change : -change) * both[k] * Sign(pair, 6 * (axis + 1) + k);
+      }
+    weighted[i + 1] = LayOut(w, normal * flag[6] * Sign(bits, 24), i);
   });
 }
 

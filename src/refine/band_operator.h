@@ -24,11 +24,12 @@ struct BandWeights {
 };
 
 // A difference that needs a voxel off the band is left out: natural boundary conditions.
-// Work: about 250 flops a voxel and product; memory 69 bytes a voxel.
+// Work: about 250 flops a voxel and product; memory 73 bytes a voxel.
 class BandOperator {
  public:
-  // Three second differences, three mixed ones (times √2) and the derivative along n, all times powers of h.
-  using Differences = std::array<float, 7>;
+  // Three second differences, three mixed ones (times √2), the derivative along n, all times powers of h; and a zero,
+  // for vectors of eight.
+  using Differences = std::array<float, 8>;
 
   // Keeps references to `topology` and `weights`.
   BandOperator(const BandTopology& topology, const BandWeights& weights, BandRows rows);
@@ -53,6 +54,9 @@ class BandOperator {
     std::array<float, 3> mixed;
   };
   void WeighDifferences(const std::vector<Differences>& differences, std::vector<Weighted>& weighted) const;
+  // The same of noise: of every difference an independent ±1 times the square root of its weight, so that what is then
+  // gathered has the covariance of the differences' part of the matrix. Which signs, `seed` decides.
+  void WeighNoise(uint64_t seed, std::vector<Weighted>& weighted) const;
   // Transposed differences at voxel i.
   float GatherDifferences(const std::vector<Weighted>& weighted, size_t i) const;
   // Σ weight · difference² over voxels [begin, end); differences[6] is less its target.
@@ -64,6 +68,7 @@ class BandOperator {
   std::vector<float> InverseAbsoluteRowSums() const;
 
  private:
+  Weighted LayOut(const Differences& weighted_bends, float weighted_normal, size_t i) const;
   double AbsoluteRowSum(size_t i, const std::vector<double>& row_sums) const;
 
   const BandTopology& topology_;

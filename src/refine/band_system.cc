@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "core/random_bits.h"
 
 namespace glint {
 namespace {
@@ -78,13 +79,40 @@ double BandSystem::Energy(const std::vector<double>& phi) const {
 
 SolveReport BandSystem::Solve(int max_iterations, double tolerance, std::vector<double>& phi) {
   GLINT_CHECK_EQ(phi.size(), rhs_.size());
+  const double initial_energy = Energy(phi);
+  SolveReport report = Minimize(rhs_, max_iterations, tolerance, phi);
+  report.initial_energy = initial_energy;
+  report.final_energy = Energy(phi);
+  return report;
+}
+
+std::vector<double> BandSystem::Deviation(uint64_t seed, const std::vector<double>& row_noise, int max_iterations,
+                                          double tolerance) {
+  GLINT_CHECK_EQ(row_noise.size(), rows().size());
+  const size_t n = weights_.n.size();
+  std::vector<BandOperator::Weighted> weighted(n + 1);
+  operator_.WeighNoise(seed, weighted);
+  const auto sign = [&](size_t place) { return (RandomBits(seed, place) & 1) != 0 ? 1.0 : -1.0; };
+  std::vector<double> row_values(rows().size());
+  for (size_t r = 0; r < rows().size(); ++r)
+    row_values[r] = std::sqrt(rows().weight[r]) * sign(2 * n + r) + rows().weight[r] * row_noise[r];
+  std::vector<double> rhs(n), deviation(n, 0);
+  ParallelFor(n, kGrain, [&](size_t i) {
+    rhs[i] = operator_.GatherDifferences(weighted, i) + std::sqrt(static_cast<double>(weights_.pull[i])) * sign(n + i) +
+             operator_.GatherRows(row_values, i);
+  });
+  Minimize(rhs, max_iterations, tolerance, deviation);
+  return deviation;
+}
+
+SolveReport BandSystem::Minimize(const std::vector<double>& rhs, int max_iterations, double tolerance,
+                                 std::vector<double>& phi) {
   if (!multigrid_) multigrid_ = std::make_unique<BandMultigrid>(operator_);
   SolveReport report;
-  report.initial_energy = Energy(phi);
   const size_t n = phi.size();
   std::vector<double> r(n), z(n), p(n), q;
   operator_.Apply(phi, q);
-  ParallelFor(n, kGrain, [&](size_t i) { r[i] = rhs_[i] - q[i]; });
+  ParallelFor(n, kGrain, [&](size_t i) { r[i] = rhs[i] - q[i]; });
   multigrid_->Apply(r, z);
   p = z;
   double rz = Dot(r, z);
@@ -107,7 +135,6 @@ SolveReport BandSystem::Solve(int max_iterations, double tolerance, std::vector<
     ++report.iterations;
   }
   report.relative_residual = first > 0 ? std::sqrt(std::max(rz, 0.0) / first) : 0;
-  report.final_energy = Energy(phi);
   return report;
 }
 

@@ -33,8 +33,16 @@ class BandSystem {
   // preconditioner) has fallen by `tolerance`.
   SolveReport Solve(int max_iterations, double tolerance, std::vector<double>& phi);
 
+  // A random deviation from the minimum whose covariance is the inverse of the matrix, which it is of the field if
+  // every term is a measurement with a variance of 1 / weight: the minimum for targets that are such noise (Papandreou
+  // and Yuille 2010). `row_noise`: what else each row's target is off by, such as an error that many share.
+  std::vector<double> Deviation(uint64_t seed, const std::vector<double>& row_noise, int max_iterations,
+                                double tolerance);
+
  private:
   void BuildRightHandSide();
+  // Conjugate gradients; fills all but the energies.
+  SolveReport Minimize(const std::vector<double>& rhs, int max_iterations, double tolerance, std::vector<double>& phi);
 
   const BandWeights weights_;
   BandOperator operator_;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/options.h"
-#include "refine/band_system.h"
-#include "refine/bundle.h"
+#include "refine/band_operator.h"
+#include "refine/surface_constraints.h"
 #include "sdf/level_set.h"
 
 namespace glint {
@@ -29,16 +29,6 @@ struct LevelSetOptions {
   void Visit(OptionVisitor& v);
 };
 
-// A place where the surface's position and normal are known. Lengths in units of the object's diagonal.
-struct OrientedPoint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // on the current surface: where the normal holds
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  Eigen::Vector3d bundle_position = Eigen::Vector3d::Zero();  // where the bundle has it
-  double sigma_position = 0;                                  // of the latter, across the surface; 0: not known
-  double sigma_normal = 0;                                    // radians
-  double reach = 0;  // radius within which it explains the surface, so that the seed need not be kept
-};
-
 struct StepSummary {
   double energy_before = 0;
   double energy_after = 0;
@@ -49,12 +39,22 @@ struct StepSummary {
   int points_off_band = 0;
 };
 
-// `surface`: the current surface as a signed distance field; `seed`: the field to stay near where nothing is known
-// (its band should be the wider one; off it there is no pull); `bend_like_seed`: ψ = φ − φ₀, else ψ = φ. With fixed
-// constraints that choice moves the mean of the prior alone, so the one with the lower energy has the more evidence.
-// All in units of the object's diagonal.
-LevelSet VariationalStep(const LevelSet& surface, const LevelSet& seed, bool bend_like_seed, double surface_area,
-                         const std::vector<OrientedPoint>& contacts, const std::vector<SurfacePoint>& points,
-                         const LevelSetOptions& options, StepSummary* summary);
+// All in units of the object's diagonal. `surface`: the current surface as a signed distance field; `seed`: the field
+// to stay near where nothing is known (its band should be the wider one; off it there is no pull); `bend_like_seed`:
+// ψ = φ − φ₀, else ψ = φ. With fixed constraints that choice moves the mean of the prior alone, so the one with the
+// lower energy has the more evidence.
+struct StepInput {
+  const LevelSet& surface;
+  const LevelSet& seed;
+  bool bend_like_seed = true;
+  double surface_area = 0;
+  const std::vector<OrientedPoint>& contacts;
+  const std::vector<SurfacePoint>& points;
+};
+
+LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options, StepSummary* summary);
+
+// Weights of the terms that every voxel has.
+BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSetOptions& options);
 
 }  // namespace glint

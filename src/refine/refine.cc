@@ -82,6 +82,8 @@ constexpr double kLobeSigmaShare = 0.08;
 // points are dense they decide; far from points the bundle does.
 constexpr double kBundleCaution = 3;
 constexpr double kLeastBundleSigma = 0.002;
+// Standard deviations change slowly over the surface.
+constexpr double kConfidenceVoxelRel = 1.0 / 64;
 // Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
 constexpr double kMinPieceShare = 0.005;
 
@@ -100,6 +102,14 @@ TriangleMesh WithoutCrumbs(const TriangleMesh& mesh) {
   for (size_t f = 0; f < mesh.faces.size(); ++f)
     if (area[pieces.of_face[f]] >= kMinPieceShare * total) kept.faces.push_back(mesh.faces[f]);
   return WithoutUnusedVertices(kept);
+}
+
+// Standard deviation of the direction to the light at a contact, radians.
+double DirectionSigma(const Light& light, const Contact& contact) {
+  if (light.type == LightType::kDistant) return light.sigma * kRadians;
+  const Eigen::Vector3d position =
+      light.frame == LightFrame::kWorld ? light.vector : contact.cam_from_world.Inverse() * light.vector;
+  return light.sigma / std::max((position - contact.Position()).norm(), light.sigma);
 }
 
 // All of the state between iterations, in units of the object's diagonal.
@@ -153,6 +163,7 @@ class Refiner {
   void UpdatePoints(const LevelSet& field);
   std::vector<OrientedPoint> OrientedPoints() const;
   void AddLobes(std::vector<OrientedPoint>& oriented) const;
+  void MeasureConfidence();
   void Finish(RefineResult& result);
 
   const RefineInput& input_;
@@ -285,6 +296,8 @@ std::vector<OrientedPoint> Refiner::OrientedPoints() const {
     const double facing = std::abs(contact.direction.dot(p.normal));
     p.sigma_position = std::clamp(kBundleCaution * contact.sigma_depth * facing, kLeastBundleSigma, 0.03);
     p.sigma_normal = contact.sigma_normal;
+    p.light = contact.light;
+    p.sigma_light = 0.5 * DirectionSigma(lights_[contact.light], contact);
     oriented.push_back(p);
   }
   // A contact explains the surface as far as the next few contacts are.
@@ -306,7 +319,7 @@ LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& 
   const std::vector<OrientedPoint> oriented = OrientedPoints();
   const double area = SurfaceArea(surface_);
   const auto step = [&](bool bend_like_seed, StepSummary& report) {
-    return VariationalStep(field_, seed_field, bend_like_seed, area, oriented, points_, options_.level_set, &report);
+    return VariationalStep({field_, seed_field, bend_like_seed, area, oriented, points_}, options_.level_set, &report);
   };
   LevelSet stepped = step(summary_.bends_like_seed, summary);
   if (!undecided || !summary_.bends_like_seed || options_.bend != "auto") return stepped;
@@ -355,8 +368,18 @@ bool Refiner::RunLevel(double voxel, size_t progress_steps) {
   return false;
 }
 
+void Refiner::MeasureConfidence() {
+  const double voxel = std::max(options_.voxel_rel, kConfidenceVoxelRel);
+  SdfOptions sdf;
+  sdf.half_width_voxels = std::max(8.0, 2 * options_.half_width_voxels);
+  const LevelSet seed_field = MeshToLevelSet(seed_, voxel, sdf);
+  const LevelSet field = Resample(field_, voxel, options_.half_width_voxels + 1);
+  const StepInput input{field, seed_field, summary_.bends_like_seed, SurfaceArea(surface_), OrientedPoints(), points_};
+  AddConfidence(PosteriorDeviation(input, options_.level_set, surface_.vertices), surface_);
+}
+
 void Refiner::Finish(RefineResult& result) {
-  AddConfidence(OrientedPoints(), points_, options_.level_set.seed_sigma_rel, surface_);
+  MeasureConfidence();
   result.mesh = frame_.ToWorld(surface_);
   SdfOptions sdf;
   sdf.half_width_voxels = options_.half_width_voxels;

@@ -15,6 +15,7 @@
 #include "colmap/project.h"
 #include "colmap/scene.h"
 #include "core/error.h"
+#include "geometry/closest_point.h"
 #include "geometry/ray_caster.h"
 #include "io/mesh_io.h"
 #include "light/light_io.h"
@@ -107,6 +108,38 @@ void PrintContacts(const std::string& scene, const Scene& views, const fs::path&
       scene, "contacts", d.count, d.median, d.p95, r.median, r.p95, z.median, z.p95);
 }
 
+// Shares of the truth's vertices in a region where the mesh is within twice the standard deviation that it states there
+// (about 95 % are if it is honest), and the deviations' medians.
+void PrintHonesty(const std::string& scene, const std::string& where, const TriangleMesh& mesh,
+                  const TriangleMesh& truth, const std::vector<uint8_t>& region) {
+  const std::vector<float>*position_rel = nullptr, *normal_deg = nullptr;
+  for (const auto& [name, values] : mesh.scalars) {
+    if (name == "sigma_position_rel") position_rel = &values;
+    if (name == "sigma_normal_deg") normal_deg = &values;
+  }
+  if (!position_rel || !normal_deg) return;
+  const MeshComparison c = CompareMeshes(mesh, truth);
+  const ClosestPointQuery query(mesh);
+  std::vector<double> position, normal, off_position, off_normal;
+  for (size_t v = 0; v < truth.vertices.size(); ++v) {
+    if (!region[v] || c.reference_normal_deg[v] < 0) continue;
+    const int corner = mesh.faces[query.Find(truth.vertices[v])->face][0];
+    position.push_back((*position_rel)[corner]);
+    normal.push_back((*normal_deg)[corner]);
+    off_position.push_back(c.reference_distance[v] / c.reference_diagonal / position.back());
+    off_normal.push_back(c.reference_normal_deg[v] / normal.back());
+  }
+  const auto share = [](const std::vector<double>& off) {
+    return 100.0 * static_cast<double>(std::count_if(off.begin(), off.end(), [](double o) { return o < 2; })) /
+           static_cast<double>(std::max<size_t>(off.size(), 1));
+  };
+  fmt::print(
+      "{:<22} {:<12} {:<16} within 2 sigma: position {:.1f} %, normal {:.1f} %; median sigma {:.4f} % diag, {:.3f} "
+      "deg; median error in sigmas {:.2f}, {:.2f}\n",
+      scene, "honesty", where, share(off_position), share(off_normal), 100 * StatsOf(position).median,
+      StatsOf(normal).median, StatsOf(off_position).median, StatsOf(off_normal).median);
+}
+
 double Seconds(const RunSummary& run) {
   double sum = 0;
   for (const StageTime& t : run.times) sum += t.seconds;
@@ -150,6 +183,10 @@ void MeasureCase(const Case& c, const Plan& plan) {
     PrintRow(c.name, "faired seed", measure(c.out / "with" / "stages" / "start.ply"), 0);
     if (plan.without) PrintRow(c.name, "without", measure(c.out / "without" / "mesh.ply"), without_s);
     PrintRow(c.name, "glint", measure(c.out / "with" / "mesh.ply"), with_s);
+    TriangleMesh result = ReadMesh(c.out / "with" / "mesh.ply");
+    Transform(c.truth_from_project, result);
+    PrintHonesty(c.name, "highlights pass", result, c.truth, c.region);
+    PrintHonesty(c.name, "elsewhere", result, c.truth, c.rest);
     TriangleMesh truth = c.truth;
     Transform(c.truth_from_project.inverse(), truth);
     PrintContacts(c.name, MakeScene(ReadModel(FindProject(c.project).model)), c.out / "with", truth);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -177,6 +178,46 @@ Problem LevelSetProblem(const Band& band) {
     problem.rows.Close(0.02 * std::sin(5.0 * k), 1e4);
   }
   return problem;
+}
+
+// Against the matrix itself, inverted: a coarse sphere, every kind of term.
+TEST(BandSystem, DeviationsHaveTheInverseOfTheMatrixAsCovariance) {
+  const Band band(MeshToLevelSet(testing::Icosphere(2), 0.45));
+  const size_t n = band.size();
+  ASSERT_LT(n, 900u);
+  BandWeights weights = Weights(band);
+  weights.smoothness = 2;
+  weights.bend_change = 3;
+  weights.normal = 0.5;
+  weights.pull.assign(n, 0.02f);
+  BandRows rows;
+  for (size_t i = 0; i + 7 < n; i += 9) {
+    rows.Push(static_cast<int32_t>(i), 1);
+    rows.Push(static_cast<int32_t>(i + 7), -0.4);
+    rows.Close(0.3, 1.5);
+  }
+  BandOperator matrix(band, weights, rows);
+  Eigen::MatrixXd a(n, n);
+  for (size_t j = 0; j < n; ++j) {
+    std::vector<double> unit(n, 0), column;
+    unit[j] = 1;
+    matrix.Apply(unit, column);
+    a.col(static_cast<Eigen::Index>(j)) = Eigen::Map<Eigen::VectorXd>(column.data(), static_cast<Eigen::Index>(n));
+  }
+  const Eigen::VectorXd expected = a.inverse().diagonal();
+  BandSystem system(band, weights, rows);
+  constexpr int kSamples = 800;
+  Eigen::VectorXd measured = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
+  for (int k = 0; k < kSamples; ++k) {
+    const std::vector<double> deviation =
+        system.Deviation(static_cast<uint64_t>(k) << 32, std::vector<double>(rows.size(), 0), 200, 1e-3);
+    for (size_t i = 0; i < n; ++i) measured[static_cast<Eigen::Index>(i)] += deviation[i] * deviation[i] / kSamples;
+  }
+  // A variance of 800 samples is good to 5 % (one standard deviation); their mean over all voxels to far less.
+  const Eigen::VectorXd ratio = measured.cwiseQuotient(expected);
+  EXPECT_NEAR(ratio.mean(), 1, 0.05);
+  EXPECT_GT(ratio.minCoeff(), 0.75);
+  EXPECT_LT(ratio.maxCoeff(), 1.3);
 }
 
 TEST(BandOperator, IsSymmetricAndItsScaledEigenvaluesAreAtMostOne) {

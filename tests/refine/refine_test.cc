@@ -98,7 +98,7 @@ Problem MakeProblem(double scale = 1, const Eigen::Vector3d& offset = Eigen::Vec
 
 RefineOptions FastOptions() {
   RefineOptions options;
-  options.voxel_rel = 1.0 / 96;
+  options.voxel_rel = 1.0 / 64;
   options.levels = 2;
   return options;
 }
@@ -132,6 +132,13 @@ Errors NearContacts(const Problem& p, const TriangleMesh& mesh, double scale = 1
   return errors;
 }
 
+const std::vector<float>& Scalar(const TriangleMesh& mesh, const std::string& name) {
+  const auto found =
+      std::find_if(mesh.scalars.begin(), mesh.scalars.end(), [&](const auto& scalar) { return scalar.first == name; });
+  EXPECT_NE(found, mesh.scalars.end()) << name;
+  return found->second;
+}
+
 TEST(Refine, BringsADentedSeedToTheTrueSurface) {
   const Problem p = MakeProblem();
   RefineOptions options = FastOptions();
@@ -145,6 +152,42 @@ TEST(Refine, BringsADentedSeedToTheTrueSurface) {
   EXPECT_GT(smooth.normal_deg, 3 * good.normal_deg);
   EXPECT_GE(with.summary.num_contacts, static_cast<int>(p.highlights.size()) - 4);
   EXPECT_EQ(without.summary.num_contacts, 0);
+}
+
+// A light that is off by an unknown degree turns all its normals: no number of highlights helps against that.
+TEST(Refine, AnUncertainLightMakesNormalsUncertain) {
+  Problem problem = MakeProblem();
+  RefineOptions options = FastOptions();
+  options.lights = "fixed";
+  const RefineResult sure = Refine(problem.Input(), options);
+  for (Light& light : problem.lights) light.sigma = 4;
+  const RefineResult unsure = Refine(problem.Input(), options);
+  std::vector<float> a = Scalar(sure.mesh, "sigma_normal_deg"), b = Scalar(unsure.mesh, "sigma_normal_deg");
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  // Where they pass; half of 4 degrees is what the half vector turns by, in both directions across the normal.
+  EXPECT_LT(a[a.size() / 10], 1);
+  EXPECT_GT(b[b.size() / 10], 1);
+}
+
+// The normals where highlights pass are within twice the standard deviation that is stated there, mostly.
+TEST(Refine, StandardDeviationsAreHonest) {
+  const Problem p = MakeProblem();
+  const TriangleMesh mesh = Refine(p.Input(), FastOptions()).mesh;
+  const std::vector<float>& sigma_deg = Scalar(mesh, "sigma_normal_deg");
+  int inside = 0, count = 0;
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Eigen::Vector3d& x = mesh.vertices[v];
+    if (!std::any_of(p.contact_positions.begin(), p.contact_positions.end(),
+                     [&](const Eigen::Vector3d& c) { return (c - x).norm() < 0.03; }))
+      continue;
+    const Eigen::Vector3d normal = x.cwiseQuotient(p.shape.radii.cwiseAbs2()).normalized();
+    const double off_deg = std::acos(std::min(1.0, normal.dot(mesh.normals[v]))) * 180 / M_PI;
+    inside += off_deg < 2 * sigma_deg[v];
+    ++count;
+  }
+  ASSERT_GT(count, 100);
+  EXPECT_GT(inside, 0.88 * count);
 }
 
 TEST(Refine, EveryStepLowersItsEnergy) {

@@ -1,0 +1,97 @@
+#include "refine/posterior.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/random_bits.h"
+#include "refine/band_system.h"
+
+namespace glint {
+namespace {
+
+constexpr int kSamples = 24;
+// A sample need not be exact: it is noise.
+constexpr double kSampleTolerance = 0.1;
+constexpr size_t kGrain = 1 << 12;
+constexpr float kUnknownNormal = static_cast<float>(20 * M_PI / 180);
+
+// A vector of six-sided dice a light: near enough to normal for what is only squared and summed.
+std::vector<Eigen::Vector3d> StandardNormals(uint64_t seed, size_t count) {
+  std::vector<Eigen::Vector3d> out(count);
+  for (size_t i = 0; i < count; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const uint64_t bits = RandomBits(seed, 3 * i + axis);
+      // Twelve bits that are 0 or 1 have a mean of 6 and a variance of 3.
+      int sum = 0;
+      for (int k = 0; k < 12; ++k) sum += static_cast<int>(bits >> k & 1);
+      out[i][axis] = (sum - 6) / std::sqrt(3.0);
+    }
+  return out;
+}
+
+// Value and gradient of a field over the band's voxels at a place; false where a voxel is missing.
+bool At(const Band& band, const std::vector<double>& field, const Eigen::Vector3d& x, double& value,
+        Eigen::Vector3d& gradient) {
+  std::array<int32_t, 8> voxels;
+  std::array<double, 8> weights;
+  if (!band.Trilinear(x, voxels, weights)) return false;
+  value = 0;
+  gradient.setZero();
+  for (int k = 0; k < 8; ++k) {
+    if (!band.HasAllNeighbors(voxels[k])) return false;
+    value += weights[k] * field[voxels[k]];
+    for (int axis = 0; axis < 3; ++axis)
+      gradient[axis] +=
+          weights[k] * (field[band.Neighbor(voxels[k], axis, 1)] - field[band.Neighbor(voxels[k], axis, 0)]);
+  }
+  gradient /= 2 * band.voxel_size();
+  return true;
+}
+
+}  // namespace
+
+SurfaceDeviation PosteriorDeviation(const StepInput& input, const LevelSetOptions& options,
+                                    const std::vector<Eigen::Vector3d>& at) {
+  const Band band(input.surface);
+  const SurfaceConstraints constraints(band, input.contacts, input.points, options.highlight_weight,
+                                       options.point_weight);
+  BandSystem system(band, StepWeights(band, input, options), constraints.rows());
+  const std::vector<double> phi(band.phi().begin(), band.phi().end());
+  system.SetRowWeights(constraints.RobustWeights(phi, false));
+
+  size_t num_lights = 0;
+  for (const OrientedPoint& contact : input.contacts)
+    num_lights = std::max(num_lights, static_cast<size_t>(contact.light + 1));
+  SurfaceDeviation sum{std::vector<float>(at.size(), 0), std::vector<float>(at.size(), 0)};
+  std::vector<Eigen::Vector3f> normals(at.size(), Eigen::Vector3f::Zero());
+  for (int sample = 0; sample < kSamples; ++sample) {
+    const uint64_t seed = static_cast<uint64_t>(sample) << 32;
+    const std::vector<double> noise = constraints.LightNoise(input.contacts, StandardNormals(~seed, num_lights));
+    const std::vector<double> deviation = system.Deviation(seed, noise, options.max_iterations, kSampleTolerance);
+    ParallelFor(at.size(), kGrain, [&](size_t i) {
+      double value;
+      Eigen::Vector3d gradient;
+      if (sample == 0) {
+        const Eigen::Vector3d g = input.surface.Gradient(at[i]);
+        if (g.norm() > 0.5) normals[i] = g.normalized().cast<float>();
+      }
+      if (normals[i].isZero() || !At(band, deviation, at[i], value, gradient)) {
+        normals[i].setZero();
+        return;
+      }
+      const Eigen::Vector3d n = normals[i].cast<double>();
+      sum.position[i] += static_cast<float>(value * value);
+      sum.normal[i] += static_cast<float>((gradient - n * n.dot(gradient)).squaredNorm());
+    });
+  }
+  ParallelFor(at.size(), kGrain, [&](size_t i) {
+    const bool known = !normals[i].isZero();
+    sum.position[i] = known ? std::sqrt(sum.position[i] / kSamples) : static_cast<float>(options.seed_sigma_rel);
+    sum.normal[i] = known ? std::sqrt(sum.normal[i] / kSamples) : kUnknownNormal;
+  });
+  return sum;
+}
+
+}  // namespace glint

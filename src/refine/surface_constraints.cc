@@ -1,0 +1,151 @@
+#include "refine/surface_constraints.h"
+
+#include <array>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+// Standard deviation of a contact's footprint: a share of the distance to the next contacts.
+constexpr double kFootprintShare = 0.1;
+constexpr double kLeastFootprintVoxels = 0.6;
+constexpr double kFootprintReach = 2.2;  // standard deviations
+
+// Weights of a squared residual in standard deviations. Contacts: Cauchy, they were judged in the bundle already.
+// Points: Geman and McClure, which lets go of the few that lie centimetres off.
+double ContactWeight(double squared) { return 1 / (1 + squared / 4); }
+double PointWeight(double squared) { return 1 / ((1 + squared / 9) * (1 + squared / 9)); }
+
+bool AddValueRow(const Band& band, const Eigen::Vector3d& x, double weight, BandRows& rows) {
+  std::array<int32_t, 8> voxels;
+  std::array<double, 8> weights;
+  if (!band.Trilinear(x, voxels, weights)) return false;
+  for (int k = 0; k < 8; ++k) rows.Push(voxels[k], weights[k]);
+  rows.Close(0, weight);
+  return true;
+}
+
+struct Tap {
+  int32_t voxel;
+  double weight;
+};
+
+// Voxels of a ball about x with Gaussian weights that sum to 1; empty if none has all its neighbours.
+std::vector<Tap> GaussianTaps(const Band& band, const Eigen::Vector3d& x, double sigma_voxels) {
+  const Eigen::Vector3d center = band.ToIndexSpace(x);
+  const double reach = kFootprintReach * sigma_voxels;
+  const Eigen::Vector3i low = (center.array() - reach).ceil().cast<int>();
+  const Eigen::Vector3i high = (center.array() + reach).floor().cast<int>();
+  std::vector<Tap> taps;
+  double sum = 0;
+  for (int i = low[0]; i <= high[0]; ++i)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int k = low[2]; k <= high[2]; ++k) {
+        const double squared = (Eigen::Vector3d(i, j, k) - center).squaredNorm();
+        if (squared > reach * reach) continue;
+        const int32_t v = band.Find({i, j, k});
+        if (v == Band::kNone || !band.HasAllNeighbors(v)) continue;
+        taps.push_back({v, std::exp(-0.5 * squared / (sigma_voxels * sigma_voxels))});
+        sum += taps.back().weight;
+      }
+  for (Tap& tap : taps) tap.weight /= sum;
+  return taps;
+}
+
+Eigen::Vector3d GradientOf(const Band& band, const std::vector<Tap>& taps) {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  for (const Tap& tap : taps)
+    for (int axis = 0; axis < 3; ++axis)
+      gradient[axis] +=
+          tap.weight * (band.phi()[band.Neighbor(tap.voxel, axis, 1)] - band.phi()[band.Neighbor(tap.voxel, axis, 0)]);
+  return gradient / (2 * band.voxel_size());
+}
+
+// The normal at a contact, as the field's mean gradient over a footprint: a gradient at a mere point costs a smooth
+// field almost nothing, it would answer with a spike. What the current field's mean over the footprint differs from
+// its gradient at the point is carried over, so that at convergence it is the gradient at the point that agrees.
+bool AddGradientRows(const Band& band, const OrientedPoint& contact, double weight, BandRows& rows) {
+  const double footprint = kFootprintShare * contact.reach / band.voxel_size();
+  const std::vector<Tap> mean = GaussianTaps(band, contact.position, std::max(footprint, kLeastFootprintVoxels));
+  std::array<int32_t, 8> voxels;
+  std::array<double, 8> weights;
+  if (mean.empty() || !band.Trilinear(contact.position, voxels, weights)) return false;
+  std::vector<Tap> point;
+  for (int k = 0; k < 8; ++k) {
+    if (!band.HasAllNeighbors(voxels[k])) return false;
+    point.push_back({voxels[k], weights[k]});
+  }
+  const Eigen::Vector3d target = contact.normal + GradientOf(band, mean) - GradientOf(band, point);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Tap& tap : mean) {
+      const double c = tap.weight / (2 * band.voxel_size());
+      rows.Push(band.Neighbor(tap.voxel, axis, 1), c);
+      rows.Push(band.Neighbor(tap.voxel, axis, 0), -c);
+    }
+    rows.Close(target[axis], weight);
+  }
+  return true;
+}
+
+}  // namespace
+
+SurfaceConstraints::SurfaceConstraints(const Band& band, const std::vector<OrientedPoint>& contacts,
+                                       const std::vector<SurfacePoint>& points, double contact_weight,
+                                       double point_weight) {
+  if (contact_weight > 0)
+    for (size_t i = 0; i < contacts.size(); ++i) {
+      const OrientedPoint& contact = contacts[i];
+      size_t first = rows_.size();
+      if (!AddGradientRows(band, contact, contact_weight / std::pow(contact.sigma_normal, 2), rows_)) {
+        ++contacts_off_band_;
+        continue;
+      }
+      EndGroup(first, false, static_cast<int>(i));
+      first = rows_.size();
+      if (contact.sigma_position > 0 &&
+          AddValueRow(band, contact.bundle_position, contact_weight / std::pow(contact.sigma_position, 2), rows_))
+        EndGroup(first, false);
+    }
+  if (point_weight > 0)
+    for (const SurfacePoint& point : points) {
+      const size_t first = rows_.size();
+      if (AddValueRow(band, point.position, point_weight / std::pow(point.sigma, 2), rows_))
+        EndGroup(first, true);
+      else
+        ++points_off_band_;
+    }
+}
+
+void SurfaceConstraints::EndGroup(size_t first, bool is_point, int contact) {
+  for (size_t r = first; r < rows_.size(); ++r) base_weight_.push_back(rows_.weight[r]);
+  groups_.push_back({first, rows_.size(), is_point, contact});
+}
+
+std::vector<double> SurfaceConstraints::RobustWeights(const std::vector<double>& phi, bool trust_contacts) const {
+  std::vector<double> weights(rows_.size());
+  for (const auto& [first, last, is_point, contact] : groups_) {
+    double squared = 0;
+    for (size_t r = first; r < last; ++r) {
+      const double residual = rows_.Dot(r, phi) - rows_.target[r];
+      squared += base_weight_[r] * residual * residual;
+    }
+    const double weight = is_point ? PointWeight(squared) : (trust_contacts ? 1 : ContactWeight(squared));
+    for (size_t r = first; r < last; ++r) weights[r] = weight * base_weight_[r];
+  }
+  return weights;
+}
+
+std::vector<double> SurfaceConstraints::LightNoise(const std::vector<OrientedPoint>& contacts,
+                                                   const std::vector<Eigen::Vector3d>& off) const {
+  std::vector<double> noise(rows_.size(), 0);
+  for (const Group& group : groups_) {
+    if (group.contact < 0) continue;
+    const OrientedPoint& c = contacts[group.contact];
+    if (c.light < 0 || c.sigma_light == 0) continue;
+    const Eigen::Vector3d turned = c.sigma_light * (off[c.light] - c.normal * c.normal.dot(off[c.light]));
+    for (int axis = 0; axis < 3; ++axis) noise[group.first + axis] = turned[axis];
+  }
+  return noise;
+}
+
+}  // namespace glint

@@ -1,0 +1,60 @@
+// What is known of the surface at single places, as rows over the voxels of a band (DESIGN 3.4): normals and positions
+// of contacts, positions of points, each weighted down where it is an outlier.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "refine/band.h"
+#include "refine/band_rows.h"
+#include "refine/bundle.h"
+
+namespace glint {
+
+// A place where the surface's position and normal are known. Lengths in units of the object's diagonal.
+struct OrientedPoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // on the current surface: where the normal holds
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d bundle_position = Eigen::Vector3d::Zero();  // where the bundle has it
+  double sigma_position = 0;                                  // of the latter, across the surface; 0: not known
+  double sigma_normal = 0;                                    // radians
+  int light = -1;
+  double sigma_light = 0;  // radians: what an error of the light, which all its contacts share, turns the normal by
+  double reach = 0;        // radius within which it explains the surface, so that the seed need not be kept
+};
+
+class SurfaceConstraints {
+ public:
+  // A weight of 0 leaves them out.
+  SurfaceConstraints(const Band& band, const std::vector<OrientedPoint>& contacts,
+                     const std::vector<SurfacePoint>& points, double contact_weight, double point_weight);
+
+  // With the full weight each.
+  const BandRows& rows() const { return rows_; }
+  int contacts_off_band() const { return contacts_off_band_; }
+  int points_off_band() const { return points_off_band_; }
+
+  // A weight a row for the field phi: less the more standard deviations it is off. `trust_contacts`: not of contacts.
+  std::vector<double> RobustWeights(const std::vector<double>& phi, bool trust_contacts) const;
+
+  // Errors of the rows' targets where the lights are off: `off` has a vector of independent standard normals a light.
+  std::vector<double> LightNoise(const std::vector<OrientedPoint>& contacts,
+                                 const std::vector<Eigen::Vector3d>& off) const;
+
+ private:
+  // Rows that are weighted down together.
+  struct Group {
+    size_t first, last;
+    bool is_point;
+    int contact;  // whose normal it is; -1: of no contact
+  };
+  void EndGroup(size_t first, bool is_point, int contact = -1);
+
+  BandRows rows_;
+  std::vector<double> base_weight_;
+  std::vector<Group> groups_;
+  int contacts_off_band_ = 0, points_off_band_ = 0;
+};
+
+}  // namespace glint
