@@ -48,11 +48,13 @@ void Flow::Prepare() {
 
 // Where the project is that the run is about: as given, or made of photographs or a film.
 ProjectPaths Flow::FindOrMakeProject() {
+  if (arguments_.stages.from == RunStage::kPhotos) fs::remove_all(out_.Photographs());
   const PhotoStageResult photos =
       RunPhotoStage(arguments_.project, out_.Photographs(), out_.root(), config_.photos, log_);
   log_.Finish();
   for (const ReconstructStep& step : photos.steps)
     summary_.times.push_back({"colmap " + step.name, step.seconds, step.reused});
+  summary_.colmap_version = photos.colmap_version;
   if (!photos.report.empty()) Note(photos.report);
   if (!photos.why_not.empty()) throw NoResultError(photos.why_not);  // there is nothing yet to report on
   return FindProject(photos.project, arguments_.images.empty() ? photos.images : arguments_.images,

@@ -143,6 +143,7 @@ PhotoStageResult RunPhotoStage(const fs::path& given, const fs::path& folder, co
   result.images = photographs.folder;
   result.masks = photographs.masks;
   result.steps = summary.steps;
+  result.colmap_version = summary.version;
   result.report = summary.BriefReport();
   result.why_not = WhyNot(summary, options.min_registered, folder);
   if (result.why_not.empty() && 2 * summary.num_registered() < summary.num_images)

@@ -26,6 +26,7 @@ struct PhotoStageResult {
   std::filesystem::path images;        // empty: in the project
   std::filesystem::path masks;         // of the object, beside the photographs; empty: none
   std::vector<ReconstructStep> steps;  // of COLMAP; empty: `given` was a project
+  std::string colmap_version;          // empty: COLMAP was not needed
   std::string report;                  // one line for people, if COLMAP was needed
   std::string why_not;                 // too few images register, and what to do; empty: they do
 };

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/versions.h"
+
 namespace glint {
 namespace {
 
@@ -105,11 +107,10 @@ Json ToJson(const RefineSummary& refine) {
 }  // namespace
 
 std::string ReportJson(const RunSummary& summary) {
-  Json json = {{"glint", GLINT_VERSION},
-               {"command", summary.command},
-               {"outcome", summary.outcome},
-               {"notes", summary.notes},
-               {"warnings", summary.warnings}};
+  Json json = {{"glint", GLINT_VERSION},     {"versions", Json::object()}, {"command", summary.command},
+               {"outcome", summary.outcome}, {"notes", summary.notes},     {"warnings", summary.warnings}};
+  for (const auto& [name, version] : LibraryVersions()) json["versions"][name] = version;
+  if (!summary.colmap_version.empty()) json["versions"]["COLMAP"] = summary.colmap_version;
   json["project"] = {{"model", summary.model.string()}, {"images", summary.images.string()},
                      {"views", summary.num_views},      {"missing_images", summary.num_missing_images},
                      {"points", summary.num_points},    {"points_on_object", summary.num_points_used}};

@@ -17,10 +17,11 @@
 
 namespace glint {
 
-// The stages whose results are kept in the workspace, in their order; a run can go on from any of them.
-enum class RunStage { kSeed, kDetect, kLights, kGate, kRefine, kReport };
-inline constexpr std::array<std::string_view, 6> kRunStageNames = {"seed", "detect", "lights",
-                                                                   "gate", "refine", "report"};
+// The stages whose results are kept in the workspace, in their order; a run can go on from any of them. "photos" makes
+// the COLMAP project and has nothing to do where one is given.
+enum class RunStage { kPhotos, kSeed, kDetect, kLights, kGate, kRefine, kReport };
+inline constexpr std::array<std::string_view, 7> kRunStageNames = {"photos", "seed",   "detect", "lights",
+                                                                   "gate",   "refine", "report"};
 
 // Which stages are done. Unless told otherwise, those whose results are not in the workspace yet.
 struct StageChoice {
@@ -52,6 +53,7 @@ struct RunSummary {
   std::string outcome;  // "done", "nothing to do", "stopped after STAGE", or why there is no result
   std::filesystem::path model;
   std::filesystem::path images;
+  std::string colmap_version;  // empty: COLMAP was not needed
   size_t num_views = 0;
   size_t num_missing_images = 0;
   size_t num_points = 0;

@@ -98,6 +98,7 @@ void VisitPart(RunStage stage, Summary& summary, const Field& field) {
       field("num_vertices", summary.num_vertices);
       field("num_faces", summary.num_faces);
       break;
+    case RunStage::kPhotos:
     case RunStage::kDetect:
     case RunStage::kReport:
       break;

@@ -86,7 +86,7 @@ void DeclareStageOptions(CLI::App& command, Arguments& arguments) {
   CLI::Option* from =
       command.add_option("--from", arguments.from, "Do this stage and those after it in any case")->check(a_stage);
   command.add_option("--until", arguments.until, "Stop after this stage")->check(a_stage);
-  command.add_flag("--force", arguments.force, "Do every stage anew")->excludes(from);
+  command.add_flag("--force", arguments.force, "Do every stage anew, COLMAP's too")->excludes(from);
 }
 
 // What belongs to one project; a batch file says it for each of its projects.

@@ -88,7 +88,8 @@ def run(
         mesh: start from this mesh in the project's frame, not from the sparse points.
         images: folder of the images, if not in the project.
         masks: folder of masks, if not in the project.
-        from_stage: do this stage ("seed", "detect", "lights", "gate", "refine", "report") and those after it in any case;
+        from_stage: do this stage ("photos", "seed", "detect", "lights", "gate", "refine",
+            "report") and those after it in any case;
             without it, only what is not done yet.
         until: stop after this stage.
         progress: called with every Event, on the calling thread; what it raises ends the run.

@@ -45,10 +45,10 @@ def make_reports(program, folder):
         if os.path.exists(path):
             rename_in(path)
     os.rename(f"{project}/images/view_004.jpg", f"{project}/images/{MARKUP}")
-    common = ["run", project, "--lights", f"{project}/truth/lights.json", "--set", "refine.voxel_rel=0.015", "-q"]
+    common = ["run", project, "--lights", f"{project}/truth/lights.json", "--set", "refine.voxel_rel=0.02", "-q"]
     code, said = glint(program, *common, "-o", f"{folder}/done")
     expect(code == 0, f"glint run ({said.strip()})")
-    code, _ = glint(program, *common, "-o", f"{folder}/gives_up", "--set", "detect.min_strength=1")
+    code, _ = glint(program, *common, "-o", f"{folder}/gives_up", "--mesh", f"{folder}/done/seed.ply", "--set", "detect.min_strength=1")
     expect(code == 3, f"glint run that gives up exits 3, found {code}")
     return f"{folder}/done/report.html", f"{folder}/gives_up/report.html"
 
@@ -180,7 +180,7 @@ def check_words(browser):
         expect(part in text, f"the page says {part!r}")
     expect(browser.run("return document.querySelectorAll('#plots figure').length") >= 5, "plots of convergence")
     expect(browser.run("return document.querySelectorAll('#advice li').length") >= 1, "advice")
-    expect("voxel_rel: 0.015" in browser.run("return document.getElementById('config').textContent"), "configuration")
+    expect("voxel_rel: 0.02" in browser.run("return document.getElementById('config').textContent"), "configuration")
     browser.run("document.getElementById('theme').click()")
     expect(browser.run("return document.documentElement.dataset.theme") == "dark", "the button makes it dark")
     requests = browser.run("return performance.getEntriesByType('resource').filter(r => !r.name.startsWith('data:')).length")

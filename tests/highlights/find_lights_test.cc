@@ -110,7 +110,9 @@ std::vector<cv::Mat> InAMirror(const SyntheticScene& scene) {
 }
 
 TEST(FindLights, AMirrorOfItsSurroundingsIsSaid) {
-  const SyntheticScene scene = SynthesizeScene(testing::SmallScene("distant", 1));
+  SyntheticOptions options = testing::SmallScene("distant", 1);
+  options.views = 8;
+  const SyntheticScene scene = SynthesizeScene(options);
   const std::vector<cv::Mat> images = InAMirror(scene);
   FindLightsSummary summary;
   FindLights(MakeScene(scene.model), MemoryImages(images), TrueMesh(scene, 40), {}, {}, testing::Candidates(images),

@@ -80,6 +80,9 @@ TEST_F(FromPhotographs, OneCommandToTheMesh) {
   EXPECT_THAT(colmap_.Lines(), HasSubstr("--ImageReader.single_camera 1"));
   const auto report = nlohmann::json::parse(ReadText(folder_ / "out/report.json"));
   EXPECT_THAT(report.dump(), AllOf(HasSubstr("colmap features"), HasSubstr("COLMAP 3.8")));
+  EXPECT_EQ(report["versions"]["COLMAP"], "3.8");
+  for (const char* library : {"CGAL", "Ceres", "OpenCV", "OpenVDB", "compiler"})
+    EXPECT_THAT(report["versions"].value(library, ""), ::testing::ContainsRegex("[0-9]+\\.[0-9]")) << library;
 
   const TriangleMesh mesh = ReadMesh(folder_ / "out/mesh.ply");
   ASSERT_EQ(mesh.colors.size(), mesh.vertices.size());
@@ -90,6 +93,19 @@ TEST_F(FromPhotographs, OneCommandToTheMesh) {
 
   EXPECT_EQ(RunOn("photographs", more).exit_code, 0);
   EXPECT_THAT(colmap_.Calls(), IsEmpty()) << "what is finished is not done again";
+}
+
+TEST_F(FromPhotographs, AStageLikeOthers) {
+  EXPECT_EQ(RunOn("photographs", {"--until", "photos"}).exit_code, 0);
+  EXPECT_EQ(colmap_.Calls().size(), 3u);
+  EXPECT_TRUE(fs::is_directory(folder_ / "out/colmap/sparse"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/seed.ply"));
+  Write("out/colmap/stale", "of a run before");
+  EXPECT_EQ(RunOn("photographs", {"--from", "seed", "--until", "seed"}).exit_code, 0);
+  EXPECT_THAT(colmap_.Calls(), IsEmpty());
+  EXPECT_EQ(RunOn("photographs", {"--from", "photos", "--until", "photos"}).exit_code, 0);
+  EXPECT_EQ(colmap_.Calls().size(), 3u) << "done anew";
+  EXPECT_FALSE(fs::exists(folder_ / "out/colmap/stale"));
 }
 
 TEST_F(FromPhotographs, MissingColmapIsNamedWithHowToInstallIt) {

@@ -119,7 +119,7 @@ TEST_F(Resume, FromUntilAndForce) {
   const ProgramResult other = Run("out", {"--from", "refine", "--set", "gate.paint_ratio=0.5"});
   EXPECT_EQ(other.exit_code, 0);
   EXPECT_THAT(other.err, AllOf(HasSubstr("warning: gate"), HasSubstr("gate.paint_ratio was 0.55, is 0.5")));
-  EXPECT_EQ(Redone("out", {"--force"}).size(), kRunStageNames.size());
+  EXPECT_THAT(Redone("out", {"--force"}), ElementsAre("seed", "detect", "lights", "gate", "refine", "report"));
   EXPECT_TRUE(Results("out") == first);
   EXPECT_EQ(Run("out", {"--from", "refine", "--until", "seed"}).exit_code, 2);
   EXPECT_EQ(Run("out", {"--from", "refine", "--force"}).exit_code, 2);

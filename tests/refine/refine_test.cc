@@ -202,12 +202,14 @@ TEST(Refine, EveryStepLowersItsEnergy) {
 
 TEST(Refine, IsEquivariantUnderScaleAndTranslation) {
   const Problem unit = MakeProblem();
-  const RefineResult a = Refine(unit.Input(), FastOptions());
+  RefineOptions options = FastOptions();
+  options.voxel_rel *= 2;
+  const RefineResult a = Refine(unit.Input(), options);
   const Errors expected = NearContacts(unit, a.mesh);
   for (double scale : {1e-6, 1e6}) {
     const Eigen::Vector3d offset = scale * Eigen::Vector3d(3, -2, 1);
     const Problem p = MakeProblem(scale, offset);
-    const RefineResult b = Refine(p.Input(), FastOptions());
+    const RefineResult b = Refine(p.Input(), options);
     const Errors errors = NearContacts(p, b.mesh, scale, offset);
     EXPECT_NEAR(errors.normal_deg, expected.normal_deg, 0.1);
     EXPECT_EQ(b.level_set.empty(), scale < 1);  // OpenVDB has a smallest voxel
@@ -220,6 +222,7 @@ TEST(Refine, IsEquivariantUnderScaleAndTranslation) {
 TEST(Refine, IsTheSameAtAnyNumberOfThreads) {
   const Problem p = MakeProblem();
   RefineOptions options = FastOptions();
+  options.voxel_rel *= 2;
   options.levels = 1;
   std::vector<TriangleMesh> meshes;
   for (int threads : {1, 2}) {

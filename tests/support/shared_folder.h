@@ -1,6 +1,6 @@
-// A folder that is dear to make and that several tests look at, and leave as it is. ctest starts a process for each test:
-// the first one that needs the folder makes it, in GLINT_SHARED_FOLDERS, while others wait; ctest removes them in the
-// end (fixture `shared_folders`). Without ctest it is the process' own.
+// A folder that is dear to make and that several tests look at, and leave as it is. ctest starts a process for each
+// test: the first one that needs the folder makes it, in GLINT_SHARED_FOLDERS, while others wait; ctest removes them in
+// the end (fixture `shared_folders`). Without ctest it is the process' own.
 #pragma once
 
 #include <fcntl.h>

@@ -17,10 +17,11 @@ export function buildHeader(data) {
   byId('outcome').textContent = done(data) ? 'done' : 'no result';
   byId('outcome').className = `badge ${done(data) ? 'good' : 'problem'}`;
   const used = report.highlights.final_by_status.accepted || 0;
+  const determined = report.lights.refined.filter((l) => l.determined).length;
   const facts = [
     ['photographs', count(report.project.views)],
-    [`of ${count(report.highlights.candidates)} highlights used`, count(used)],
-    ['lights', count(report.lights.refined.filter((l) => l.determined).length)],
+    [`highlights used, of ${count(report.highlights.candidates)} bright spots`, count(used)],
+    [determined === 1 ? 'light' : 'lights', count(determined)],
     ['triangles', count(report.mesh.faces)],
     ['iterations', count(report.refine.iterations.length)],
     ['time', seconds(run.total_seconds)],
@@ -115,6 +116,7 @@ export function buildRun(data) {
       el('b', {}, s.reused ? 'kept' : seconds(s.seconds)))));
   const facts = [
     ['Glint', report.glint],
+    ['With', Object.entries(report.versions).map(([name, version]) => `${name} ${version}`).join(', ')],
     ['Model', report.project.model],
     ['Photographs', report.project.images],
     ['Sparse points', `${count(report.project.points)}, of which ${count(report.project.points_on_object)} on the object`],
