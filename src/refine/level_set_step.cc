@@ -39,6 +39,8 @@ void LevelSetOptions::Visit(OptionVisitor& v) {
           point_weight);
   v.Field({.name = "highlight_weight", .help = "weight of the highlights; 0: not used", .min = 0, .max = 1e4},
           highlight_weight);
+  v.Field({.name = "outline_weight", .help = "weight of the object's outlines; 0: not used", .min = 0, .max = 1e4},
+          outline_weight);
   v.Field({.name = "reweightings", .help = "solves with weights of outliers lowered", .min = 1, .max = 20},
           reweightings);
   v.Field({.name = "max_iterations", .help = "of the linear solver", .min = 1, .max = 100000}, max_iterations);
@@ -107,14 +109,21 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
   return weights;
 }
 
+SurfaceConstraints StepConstraints(const Band& band, const StepInput& input, const LevelSetOptions& options) {
+  SurfaceConstraints constraints(band);
+  constraints.AddContacts(input.contacts, options.highlight_weight);
+  constraints.AddPoints(input.points, options.point_weight);
+  constraints.AddOutline(input.outline, options.outline_weight);
+  return constraints;
+}
+
 LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options, StepSummary* summary) {
   StepSummary local;
   StepSummary& report = summary ? *summary : local;
   report = {};
   const Band band(input.surface);
   report.num_voxels = band.size();
-  const SurfaceConstraints constraints(band, input.contacts, input.points, options.highlight_weight,
-                                       options.point_weight);
+  const SurfaceConstraints constraints = StepConstraints(band, input, options);
   report.contacts_off_band = constraints.contacts_off_band();
   report.points_off_band = constraints.points_off_band();
   BandSystem system(band, StepWeights(band, input, options), constraints.rows());

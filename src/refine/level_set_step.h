@@ -23,6 +23,7 @@ struct LevelSetOptions {
   double seed_length_rel = 0.06;
   double point_weight = 1;
   double highlight_weight = 1;
+  double outline_weight = 1;
   int reweightings = 2;
   int max_iterations = 200;
   double tolerance = 0.05;
@@ -50,10 +51,13 @@ struct StepInput {
   double surface_area = 0;
   const std::vector<OrientedPoint>& contacts;
   const std::vector<SurfacePoint>& points;
+  const std::vector<OrientedPoint>& outline;  // where the surface touches rays through outlines
 };
 
 LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options, StepSummary* summary);
 
+// Its parts, for who wants to know more of the minimum. What is known at single places:
+SurfaceConstraints StepConstraints(const Band& band, const StepInput& input, const LevelSetOptions& options);
 // Weights of the terms that every voxel has.
 BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSetOptions& options);
 

@@ -55,8 +55,7 @@ bool At(const Band& band, const std::vector<double>& field, const Eigen::Vector3
 SurfaceDeviation PosteriorDeviation(const StepInput& input, const LevelSetOptions& options,
                                     const std::vector<Eigen::Vector3d>& at) {
   const Band band(input.surface);
-  const SurfaceConstraints constraints(band, input.contacts, input.points, options.highlight_weight,
-                                       options.point_weight);
+  const SurfaceConstraints constraints = StepConstraints(band, input, options);
   BandSystem system(band, StepWeights(band, input, options), constraints.rows());
   const std::vector<double> phi(band.phi().begin(), band.phi().end());
   system.SetRowWeights(constraints.RobustWeights(phi, false));

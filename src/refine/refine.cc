@@ -6,82 +6,26 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include <optional>
-#include <tuple>
+#include <utility>
 
 #include "constraints/point_covariance.h"
 #include "core/check.h"
-#include "core/median.h"
 #include "geometry/components.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
-#include "geometry/ray_caster.h"
 #include "refine/confidence.h"
-#include "refine/lobe.h"
+#include "refine/highlight_contacts.h"
 #include "refine/normalized.h"
+#include "refine/outline_contacts.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
 #include "sdf/rebuild.h"
 
 namespace glint {
 
-void RefineOptions::Visit(OptionVisitor& v) {
-  v.Field({.name = "voxel_rel",
-           .help = "voxel size of the finest level",
-           .unit = "fraction of the diagonal",
-           .min = 1e-4,
-           .max = 0.1},
-          voxel_rel);
-  v.Field({.name = "levels", .help = "coarse to fine; each doubles the resolution", .min = 1, .max = 8}, levels);
-  v.Field({.name = "half_width_voxels", .help = "of the narrow band", .unit = "voxels", .min = 3, .max = 20},
-          half_width_voxels);
-  v.Field({.name = "max_iterations", .help = "of bundle and level set, a level", .min = 1, .max = 100}, max_iterations);
-  v.Field({.name = "min_motion_voxels",
-           .help = "a level is done when the contacts move less (median)",
-           .unit = "voxels",
-           .min = 0,
-           .max = 10},
-          min_motion_voxels);
-  v.Field({.name = "min_point_sigma_rel",
-           .help = "least standard deviation of a sparse point across the surface",
-           .unit = "fraction of the diagonal",
-           .min = 1e-6,
-           .max = 0.1},
-          min_point_sigma_rel);
-  v.Field({.name = "use_highlights", .help = "false: points and smoothness alone, to see what the highlights add"},
-          use_highlights);
-  v.Field({.name = "use_lobes", .help = "the shapes of the highlights too, not only their peaks"}, use_lobes);
-  v.Field(
-      {.name = "bend",
-       .help = "what costs no bending: seed: to bend like the seed; flat: not to bend; auto: what the constraints are "
-               "better explained by",
-       .choices = {"auto", "seed", "flat"}},
-      bend);
-  v.Field({.name = "lights",
-           .help = "fixed: as given; solve: refined jointly; auto: those with a standard deviation are solved",
-           .choices = {"auto", "fixed", "solve"}},
-          lights);
-  VisitSection(v, "contacts", "highlights as oriented rays", contacts);
-  VisitSection(v, "bundle", "the specular bundle", bundle);
-  VisitSection(v, "level_set", "the energy of the level set", level_set);
-}
-
 namespace {
 
 constexpr double kRadians = M_PI / 180;
-// A highlight narrower than this share of what the surface would make of the usual lobe lies elsewhere.
-constexpr double kMinWidthShare = 0.45;
-// Nor does one that is wider by this factor: the surface is sharper there than the highlight says.
-constexpr double kMaxWidthShare = 4;
-// A highlight that was left out for its size comes back only when it fits clearly, so that it does not come and go.
-constexpr double kReturnMargin = 1.5;
-// Standard deviation of a normal at a blob's end: the blob is not quite the lobe's.
-constexpr double kLeastLobeSigma = 0.25 * kRadians;
-constexpr double kLobeSigmaShare = 0.08;
-// The errors of the bundle's depths are alike over whole regions, which their standard deviations do not say. Where
-// points are dense they decide; far from points the bundle does.
-constexpr double kBundleCaution = 3;
-constexpr double kLeastBundleSigma = 0.002;
 // Standard deviations change slowly over the surface.
 constexpr double kConfidenceVoxelRel = 1.0 / 64;
 // Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
@@ -104,34 +48,21 @@ TriangleMesh WithoutCrumbs(const TriangleMesh& mesh) {
   return WithoutUnusedVertices(kept);
 }
 
-// Standard deviation of the direction to the light at a contact, radians.
-double DirectionSigma(const Light& light, const Contact& contact) {
-  if (light.type == LightType::kDistant) return light.sigma * kRadians;
-  const Eigen::Vector3d position =
-      light.frame == LightFrame::kWorld ? light.vector : contact.cam_from_world.Inverse() * light.vector;
-  return light.sigma / std::max((position - contact.Position()).norm(), light.sigma);
-}
-
 // All of the state between iterations, in units of the object's diagonal.
 class Refiner {
  public:
   Refiner(const RefineInput& input, const RefineOptions& options, Progress& progress)
-      : input_(input), options_(options), progress_(progress), frame_(UnitFrame::Of(input.seed)) {
+      : input_(input),
+        options_(options),
+        progress_(progress),
+        frame_(UnitFrame::Of(input.seed)),
+        highlights_(MakeHighlights()) {
     seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
     seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
     surface_ = seed_;
     summary_.bends_like_seed = options.bend != "flat";
-    for (const Light& light : input.lights) {
-      lights_.push_back(frame_.FromWorld(light));
-      solve_lights_.push_back(options.lights == "solve" || (options.lights == "auto" && light.sigma > 0));
-    }
-    known_lights_ = lights_;
-    if (options.use_highlights)
-      for (const Contact& contact : MakeContacts(input.scene, input.highlights, options.contacts))
-        contacts_.push_back(frame_.FromWorld(contact));
-    misfit_.assign(contacts_.size(), 0);
-    lobes_.resize(contacts_.size());
     MakePoints();
+    MakeOutline();
   }
 
   RefineResult Run() {
@@ -151,18 +82,16 @@ class Refiner {
   }
 
  private:
+  HighlightContacts MakeHighlights() const;
   void MakePoints();
+  void MakeOutline();
   // Four times the surface takes four times as long: the steps of progress are weighed so.
   static size_t StepsOfIteration(int level) { return size_t{1} << (2 * level); }
   size_t MaxIterations() const { return static_cast<size_t>(options_.max_iterations); }
   bool RunLevel(double voxel, size_t progress_steps);
   LevelSet Step(const LevelSet& seed_field, bool undecided, StepSummary& summary);
   void TakeSurface(const LevelSet& stepped, const SdfOptions& sdf);
-  double UpdateContacts(const LevelSet& field, IterationSummary& iteration);
-  void MeasureLobes(const RayCaster& caster);
   void UpdatePoints(const LevelSet& field);
-  std::vector<OrientedPoint> OrientedPoints() const;
-  void AddLobes(std::vector<OrientedPoint>& oriented) const;
   void MeasureConfidence();
   void Finish(RefineResult& result);
 
@@ -172,16 +101,26 @@ class Refiner {
   const UnitFrame frame_;
   TriangleMesh seed_, surface_;
   LevelSet field_;  // of the surface; empty before the first step
-  std::vector<Light> lights_, known_lights_;
-  std::vector<bool> solve_lights_;
-  std::vector<Contact> contacts_;
-  std::vector<uint8_t> misfit_;             // a contact: was left out for its size
-  std::vector<std::optional<Lobe>> lobes_;  // a contact: its blob on the current surface
-  double lobe_width_ = 0;                   // radians, the median
+  HighlightContacts highlights_;
   std::vector<SurfacePoint> points_;
   std::vector<Eigen::Matrix3d> point_covariance_;
+  std::vector<OutlineRay> outline_;
   RefineSummary summary_;
 };
+
+HighlightContacts Refiner::MakeHighlights() const {
+  std::vector<Light> lights;
+  std::vector<bool> solve;
+  for (const Light& light : input_.lights) {
+    lights.push_back(frame_.FromWorld(light));
+    solve.push_back(options_.lights == "solve" || (options_.lights == "auto" && light.sigma > 0));
+  }
+  std::vector<Contact> contacts;
+  if (options_.use_highlights)
+    for (const Contact& contact : MakeContacts(input_.scene, input_.highlights, options_.contacts))
+      contacts.push_back(frame_.FromWorld(contact));
+  return {std::move(contacts), std::move(lights), std::move(solve), options_.use_lobes};
+}
 
 void Refiner::MakePoints() {
   const Scene& scene = input_.scene;
@@ -197,57 +136,11 @@ void Refiner::MakePoints() {
   }
 }
 
-// Depths at which the rays meet the surface; returns how far the contacts moved (median), on the surface or in the
-// bundle, whichever is more.
-double Refiner::UpdateContacts(const LevelSet& field, IterationSummary& iteration) {
-  const RayCaster caster(surface_);
-  // A seed's normals are not to be relied on; those of a surface that has met the contacts once are.
-  const bool reliable = !summary_.iterations.empty();
-  std::vector<double> surface_motion;
-  for (Contact& contact : contacts_) {
-    contact.accepted = false;
-    contact.reason = HighlightStatus::kInconsistent;
-    const auto hit = caster.Intersect(contact.origin, contact.direction);
-    if (!hit) {
-      contact.reason = HighlightStatus::kOffSurface;
-      continue;
-    }
-    if (contact.prior_depth > 0) surface_motion.push_back(std::abs(hit->t - contact.prior_depth));
-    contact.prior_depth = hit->t;
-    if (reliable) contact.surface_normal = field.Gradient(hit->position).normalized();
-    if (contact.depth == 0) contact.depth = hit->t;
-    contact.accepted = Incidence(contact, lights_[contact.light]) < options_.contacts.max_incidence_deg * kRadians;
-    iteration.contacts_on_surface += contact.accepted;
-  }
-  MeasureLobes(caster);
-  std::vector<double> before, motion;
-  for (const Contact& contact : contacts_) before.push_back(contact.depth);
-  iteration.bundle = SolveBundle(points_, 1.0, solve_lights_, options_.bundle, contacts_, lights_, &known_lights_);
-  for (size_t i = 0; i < contacts_.size(); ++i)
-    if (contacts_[i].accepted) motion.push_back(std::abs(contacts_[i].depth - before[i]));
-  return std::max(Median(motion), Median(surface_motion));
-}
-
-// A much smaller highlight than the surface would make comes from a sharper place (a rim, a handle) that the seed does
-// not have, and its ray meets the surface behind.
-void Refiner::MeasureLobes(const RayCaster& caster) {
-  std::vector<double> widths;
-  for (size_t i = 0; i < contacts_.size(); ++i) {
-    lobes_[i].reset();
-    if (!contacts_[i].accepted) continue;
-    lobes_[i] = LayLobe(contacts_[i], lights_[contacts_[i].light], surface_, caster);
-    if (lobes_[i]) widths.push_back(lobes_[i]->Width());
-  }
-  lobe_width_ = Median(widths);
-  for (size_t i = 0; i < contacts_.size(); ++i) {
-    if (!lobes_[i]) continue;
-    const auto [least, most] = std::minmax({lobes_[i]->turn.col(0).norm(), lobes_[i]->turn.col(1).norm()});
-    const double margin = misfit_[i] ? kReturnMargin : 1;
-    misfit_[i] = least < margin * kMinWidthShare * lobe_width_ || margin * most > kMaxWidthShare * lobe_width_;
-    if (!misfit_[i]) continue;
-    contacts_[i].accepted = false;
-    contacts_[i].reason = HighlightStatus::kWrongSize;
-  }
+void Refiner::MakeOutline() {
+  if (!options_.use_outlines) return;
+  for (const OutlineSample& sample : input_.outline)
+    outline_.push_back({frame_.FromWorld(input_.scene.views[sample.view].Center()), sample.ray, sample.normal,
+                        frame_.scale * sample.near, frame_.scale * sample.far, frame_.scale * sample.sigma});
 }
 
 void Refiner::UpdatePoints(const LevelSet& field) {
@@ -264,62 +157,17 @@ void Refiner::UpdatePoints(const LevelSet& field) {
   }
 }
 
-// The ends of each blob's axes, whose normals its size tells: what the peaks say of the slopes, these say of the
-// curvatures.
-void Refiner::AddLobes(std::vector<OrientedPoint>& oriented) const {
-  const double sigma = std::max(kLeastLobeSigma, kLobeSigmaShare * lobe_width_);
-  size_t parent = 0;
-  for (size_t i = 0; i < contacts_.size(); ++i) {
-    if (!contacts_[i].accepted) continue;
-    const OrientedPoint peak = oriented[parent++];
-    if (!lobes_[i]) continue;
-    const std::array<Eigen::Vector3d, 4> normals = lobes_[i]->NormalsAtEnds(lobe_width_);
-    for (int k = 0; k < 4; ++k) {
-      OrientedPoint end = peak;
-      end.position = lobes_[i]->position[k];
-      end.normal = normals[k];
-      end.sigma_position = 0;
-      end.sigma_normal = std::hypot(peak.sigma_normal, sigma);
-      oriented.push_back(end);
-    }
-  }
-}
-
-std::vector<OrientedPoint> Refiner::OrientedPoints() const {
-  std::vector<OrientedPoint> oriented;
-  for (const Contact& contact : contacts_) {
-    if (!contact.accepted) continue;
-    OrientedPoint p;
-    p.position = contact.SurfacePosition();
-    p.bundle_position = contact.Position();
-    p.normal = ContactNormal(contact, lights_[contact.light]);
-    const double facing = std::abs(contact.direction.dot(p.normal));
-    p.sigma_position = std::clamp(kBundleCaution * contact.sigma_depth * facing, kLeastBundleSigma, 0.03);
-    p.sigma_normal = contact.sigma_normal;
-    p.light = contact.light;
-    p.sigma_light = 0.5 * DirectionSigma(lights_[contact.light], contact);
-    oriented.push_back(p);
-  }
-  // A contact explains the surface as far as the next few contacts are.
-  constexpr size_t kNear = 6;
-  for (OrientedPoint& p : oriented) {
-    std::vector<double> distances;
-    for (const OrientedPoint& q : oriented) distances.push_back((q.position - p.position).norm());
-    const size_t k = std::min(kNear, distances.size() - 1);
-    std::nth_element(distances.begin(), distances.begin() + k, distances.end());
-    p.reach = std::clamp(distances[k], 0.02, 0.12);
-  }
-  if (options_.use_lobes) AddLobes(oriented);
-  return oriented;
-}
-
 // A faired seed bends much as the object does, a raw mesh is rough: the first step of each level
 // tells which it is, at the roughness that its voxels resolve.
 LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& summary) {
-  const std::vector<OrientedPoint> oriented = OrientedPoints();
+  const std::vector<OrientedPoint> contacts = highlights_.Oriented();
+  const std::vector<OrientedPoint> outline = OutlineContacts(outline_, field_);
   const double area = SurfaceArea(surface_);
+  if (options_.method == "flow")
+    return FlowStep({field_, seed_field, false, area, contacts, points_, outline}, options_.flow, &summary);
   const auto step = [&](bool bend_like_seed, StepSummary& report) {
-    return VariationalStep({field_, seed_field, bend_like_seed, area, oriented, points_}, options_.level_set, &report);
+    return VariationalStep({field_, seed_field, bend_like_seed, area, contacts, points_, outline}, options_.level_set,
+                           &report);
   };
   LevelSet stepped = step(summary_.bends_like_seed, summary);
   if (!undecided || !summary_.bends_like_seed || options_.bend != "auto") return stepped;
@@ -353,7 +201,11 @@ bool Refiner::RunLevel(double voxel, size_t progress_steps) {
     iteration.voxel_rel = voxel;
     if (field_.empty()) field_ = MeshToLevelSet(surface_, voxel, sdf);
     UpdatePoints(field_);
-    iteration.contact_motion_voxels = UpdateContacts(field_, iteration) / voxel;
+    iteration.contact_motion_voxels =
+        highlights_.Follow(surface_, field_, !summary_.iterations.empty(),
+                           options_.contacts.max_incidence_deg * kRadians, points_, options_.bundle, iteration.bundle) /
+        voxel;
+    iteration.contacts_on_surface = highlights_.num_on_surface();
     const LevelSet stepped = Step(seed_field, k == 0, iteration.step);
     TakeSurface(stepped, sdf);
     iteration.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -374,7 +226,8 @@ void Refiner::MeasureConfidence() {
   sdf.half_width_voxels = std::max(8.0, 2 * options_.half_width_voxels);
   const LevelSet seed_field = MeshToLevelSet(seed_, voxel, sdf);
   const LevelSet field = Resample(field_, voxel, options_.half_width_voxels + 1);
-  const StepInput input{field, seed_field, summary_.bends_like_seed, SurfaceArea(surface_), OrientedPoints(), points_};
+  const std::vector<OrientedPoint> contacts = highlights_.Oriented(), outline = OutlineContacts(outline_, field);
+  const StepInput input{field, seed_field, summary_.bends_like_seed, SurfaceArea(surface_), contacts, points_, outline};
   AddConfidence(PosteriorDeviation(input, options_.level_set, surface_.vertices), surface_);
 }
 
@@ -390,13 +243,13 @@ void Refiner::Finish(RefineResult& result) {
     summary_.warnings.push_back(fmt::format(
         "no signed distance field: OpenVDB can not hold voxels of {:g}; scale the project up", voxel_world));
   result.highlights = input_.highlights;
-  for (const Contact& contact : contacts_) {
+  for (const Contact& contact : highlights_.contacts()) {
     if (contact.accepted)
       result.contacts.push_back(frame_.ToWorld(contact));
     else
       result.highlights[contact.highlight].status = contact.reason;
   }
-  for (size_t k = 0; k < lights_.size(); ++k) result.lights.push_back(frame_.ToWorld(lights_[k]));
+  for (const Light& light : highlights_.lights()) result.lights.push_back(frame_.ToWorld(light));
   summary_.num_contacts = static_cast<int>(result.contacts.size());
   if (!summary_.converged)
     summary_.warnings.push_back(

@@ -2,7 +2,6 @@
 // to fine, until the contacts stop moving (DESIGN 3.3, 3.4).
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,10 @@
 #include "highlights/highlight.h"
 #include "light/light.h"
 #include "refine/bundle.h"
+#include "refine/flow_step.h"
 #include "refine/level_set_step.h"
 #include "sdf/level_set.h"
+#include "silhouette/outline.h"
 
 namespace glint {
 
@@ -28,11 +29,14 @@ struct RefineOptions {
   double min_point_sigma_rel = 0.0002;
   bool use_highlights = true;
   bool use_lobes = true;
-  std::string bend = "auto";    // "seed", "flat", "auto": what the evidence is for
-  std::string lights = "auto";  // "fixed", "solve", "auto": solve those with a standard deviation
+  bool use_outlines = true;
+  std::string method = "variational";  // or "flow"
+  std::string bend = "auto";           // "seed", "flat", "auto": what the evidence is for
+  std::string lights = "auto";         // "fixed", "solve", "auto": solve those with a standard deviation
   ContactOptions contacts;
   BundleOptions bundle;
   LevelSetOptions level_set;
+  FlowOptions flow;
   void Visit(OptionVisitor& v);
 };
 
@@ -43,6 +47,7 @@ struct RefineInput {
   std::vector<uint8_t> point_used;  // a scene point: lies on the object's surface; empty: none does
   std::vector<Highlight> highlights;
   std::vector<Light> lights;
+  std::vector<OutlineSample> outline = {};
 };
 
 struct IterationSummary {

@@ -89,31 +89,42 @@ bool AddGradientRows(const Band& band, const OrientedPoint& contact, double weig
 
 }  // namespace
 
-SurfaceConstraints::SurfaceConstraints(const Band& band, const std::vector<OrientedPoint>& contacts,
-                                       const std::vector<SurfacePoint>& points, double contact_weight,
-                                       double point_weight) {
-  if (contact_weight > 0)
-    for (size_t i = 0; i < contacts.size(); ++i) {
-      const OrientedPoint& contact = contacts[i];
-      size_t first = rows_.size();
-      if (!AddGradientRows(band, contact, contact_weight / std::pow(contact.sigma_normal, 2), rows_)) {
-        ++contacts_off_band_;
-        continue;
-      }
-      EndGroup(first, false, static_cast<int>(i));
-      first = rows_.size();
-      if (contact.sigma_position > 0 &&
-          AddValueRow(band, contact.bundle_position, contact_weight / std::pow(contact.sigma_position, 2), rows_))
-        EndGroup(first, false);
+void SurfaceConstraints::AddContacts(const std::vector<OrientedPoint>& contacts, double weight) {
+  if (weight == 0) return;
+  for (size_t i = 0; i < contacts.size(); ++i) {
+    const OrientedPoint& contact = contacts[i];
+    size_t first = rows_.size();
+    if (!AddGradientRows(band_, contact, weight / std::pow(contact.sigma_normal, 2), rows_)) {
+      ++contacts_off_band_;
+      continue;
     }
-  if (point_weight > 0)
-    for (const SurfacePoint& point : points) {
-      const size_t first = rows_.size();
-      if (AddValueRow(band, point.position, point_weight / std::pow(point.sigma, 2), rows_))
-        EndGroup(first, true);
-      else
-        ++points_off_band_;
-    }
+    EndGroup(first, false, static_cast<int>(i));
+    first = rows_.size();
+    if (contact.sigma_position > 0 &&
+        AddValueRow(band_, contact.bundle_position, weight / std::pow(contact.sigma_position, 2), rows_))
+      EndGroup(first, false);
+  }
+}
+
+void SurfaceConstraints::AddPoints(const std::vector<SurfacePoint>& points, double weight) {
+  if (weight == 0) return;
+  for (const SurfacePoint& point : points) {
+    const size_t first = rows_.size();
+    if (AddValueRow(band_, point.position, weight / std::pow(point.sigma, 2), rows_))
+      EndGroup(first, true);
+    else
+      ++points_off_band_;
+  }
+}
+
+void SurfaceConstraints::AddOutline(const std::vector<OrientedPoint>& touched, double weight) {
+  if (weight == 0) return;
+  for (const OrientedPoint& place : touched) {
+    const size_t first = rows_.size();
+    AddValueRow(band_, place.bundle_position, weight / std::pow(place.sigma_position, 2), rows_);
+    AddGradientRows(band_, place, weight / std::pow(place.sigma_normal, 2), rows_);
+    EndGroup(first, true);
+  }
 }
 
 void SurfaceConstraints::EndGroup(size_t first, bool is_point, int contact) {

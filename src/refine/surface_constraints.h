@@ -26,9 +26,13 @@ struct OrientedPoint {
 
 class SurfaceConstraints {
  public:
+  // Keeps a reference to the band.
+  explicit SurfaceConstraints(const Band& band) : band_(band) {}
+
   // A weight of 0 leaves them out.
-  SurfaceConstraints(const Band& band, const std::vector<OrientedPoint>& contacts,
-                     const std::vector<SurfacePoint>& points, double contact_weight, double point_weight);
+  void AddContacts(const std::vector<OrientedPoint>& contacts, double weight);
+  void AddPoints(const std::vector<SurfacePoint>& points, double weight);
+  void AddOutline(const std::vector<OrientedPoint>& touched, double weight);
 
   // With the full weight each.
   const BandRows& rows() const { return rows_; }
@@ -46,10 +50,12 @@ class SurfaceConstraints {
   // Rows that are weighted down together.
   struct Group {
     size_t first, last;
-    bool is_point;
-    int contact;  // whose normal it is; -1: of no contact
+    bool is_point;  // or of an outline
+    int contact;    // whose normal it is; -1: of no contact
   };
   void EndGroup(size_t first, bool is_point, int contact = -1);
+
+  const Band& band_;
 
   BandRows rows_;
   std::vector<double> base_weight_;

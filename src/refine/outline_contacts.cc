@@ -1,0 +1,63 @@
+#include "refine/outline_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/parallel.h"
+
+namespace glint {
+namespace {
+
+// Of an outline's direction in the photograph: pixels make it jagged.
+constexpr double kSigmaNormal = 3 * M_PI / 180;
+constexpr double kLeastSigma = 0.0005;
+constexpr double kReach = 0.02;  // decides the footprint over which the normal is taken
+// The ray is looked at in steps of so many voxels.
+constexpr double kStepVoxels = 0.5;
+
+// Depth of the field's least value on the ray; nothing where that is an end of [near, far], or off the band.
+std::optional<double> LeastOn(const OutlineRay& sample, const LevelSet& field) {
+  const double step = kStepVoxels * field.voxel_size();
+  const int count = static_cast<int>((sample.far - sample.near) / step) + 1;
+  int best = -1;
+  double least = (field.half_width_voxels() - 1) * field.voxel_size();
+  const double deepest = -least;
+  for (int k = 0; k <= count; ++k) {
+    const double value = field.Value(sample.eye + (sample.near + k * step) * sample.ray);
+    if (value >= least) continue;
+    least = value;
+    best = k;
+  }
+  if (best <= 0 || best >= count || least <= deepest) return std::nullopt;
+  return sample.near + best * step;
+}
+
+}  // namespace
+
+std::vector<OrientedPoint> OutlineContacts(const std::vector<OutlineRay>& outline, const LevelSet& surface) {
+  std::vector<std::optional<OrientedPoint>> found(outline.size());
+  ParallelFor(outline.size(), 64, [&](size_t i) {
+    const OutlineRay& sample = outline[i];
+    const std::optional<double> depth = LeastOn(sample, surface);
+    if (!depth) return;
+    OrientedPoint p;
+    p.bundle_position = sample.eye + *depth * sample.ray;
+    const Eigen::Vector3d gradient = surface.Gradient(p.bundle_position);
+    if (gradient.norm() < 0.5) return;
+    p.position = p.bundle_position - surface.Value(p.bundle_position) * gradient.normalized();
+    p.normal = sample.normal;
+    // Another part of the surface, which this ray does not touch.
+    if (gradient.normalized().dot(p.normal) < 0.5) return;
+    p.sigma_position = std::max(sample.sigma, kLeastSigma);
+    p.sigma_normal = kSigmaNormal;
+    p.reach = kReach;
+    found[i] = p;
+  });
+  std::vector<OrientedPoint> contacts;
+  for (const std::optional<OrientedPoint>& p : found)
+    if (p) contacts.push_back(*p);
+  return contacts;
+}
+
+}  // namespace glint

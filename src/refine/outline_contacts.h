@@ -1,0 +1,23 @@
+// The object's outlines as constraints on its surface: the surface touches each ray through an outline.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "refine/surface_constraints.h"
+#include "sdf/level_set.h"
+
+namespace glint {
+
+// A sample of an outline, its ray from `eye`. Lengths in units of the object's diagonal.
+struct OutlineRay {
+  Eigen::Vector3d eye, ray, normal;
+  double near = 0, far = 0, sigma = 0;
+};
+
+// Where the rays come nearest to the current surface: there it has to touch them, with the outline's normal. Rays
+// whose nearest place is off the band, or at an end of what the other views leave room for, are left out. Lengths in
+// units of the object's diagonal.
+std::vector<OrientedPoint> OutlineContacts(const std::vector<OutlineRay>& outline, const LevelSet& surface);
+
+}  // namespace glint
