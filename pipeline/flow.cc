@@ -15,6 +15,7 @@
 #include "pipeline/artifacts.h"
 #include "pipeline/image_stages.h"
 #include "pipeline/memory.h"
+#include "pipeline/outline_file.h"
 #include "pipeline/photo_stage.h"
 #include "pipeline/report.h"
 #include "pipeline/report_page.h"
@@ -111,12 +112,14 @@ void Flow::MakeSeed() {
   WriteMesh(out_.Seed(), seed.mesh);
   WriteMesh(out_.Start(), seed.start);
   WriteFlags(out_.PointsOnObject(), seed.point_used);
+  WriteOutline(out_.Outline(), seed.outline);
 }
 
 void Flow::TakeSeed() {
   seed_ = ReadMesh(out_.Start());
   summary_.diagonal_world = Diagonal(seed_);
   point_used_ = ReadFlags(out_.PointsOnObject(), scene_.points.size());
+  outline_ = ReadOutline(out_.Outline(), scene_.views.size());
   summary_.num_points_used = point_used_.size() - std::count(point_used_.begin(), point_used_.end(), 0);
   CheckRefineMemory(seed_, config_.refine, config_.output.memory_fraction);
 }
@@ -178,7 +181,8 @@ void Flow::TakeGated() {
 }
 
 void Flow::RefineSurface() {
-  const RefineResult refined = Refine({scene_, seed_, point_used_, highlights_, lights_}, config_.refine, log_);
+  const RefineResult refined =
+      Refine({scene_, seed_, point_used_, highlights_, lights_, outline_}, config_.refine, log_);
   log_.Finish();
   for (const std::string& warning : refined.summary.warnings) log_.Warn(warning);
   TakeRefinedLights(refined);

@@ -18,6 +18,7 @@
 #include "pipeline/stages.h"
 #include "pipeline/workspace.h"
 #include "refine/refine.h"
+#include "silhouette/outline.h"
 
 namespace glint {
 
@@ -62,6 +63,7 @@ class Flow {
   Scene scene_;
   std::unique_ptr<ProjectImages> images_;
   TriangleMesh seed_;
+  std::vector<OutlineSample> outline_;
   std::vector<uint8_t> point_used_;    // of scene_: lies on the object
   std::vector<Highlight> highlights_;  // as the last stage left them
   std::vector<Light> lights_;

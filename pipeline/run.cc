@@ -12,7 +12,7 @@ std::vector<PlannedStage> Flow::Plan() {
   const PlannedStage seed = {.stage = RunStage::kSeed,
                              .given = {"model", "images", "mesh"},
                              .options = {arguments_.mesh.empty() ? "seed" : "given_mesh"},
-                             .leaves = {out_.Start(), out_.Seed(), out_.PointsOnObject(), out_.Points()},
+                             .leaves = {out_.Start(), out_.Seed(), out_.PointsOnObject(), out_.Points(), out_.Outline()},
                              .make = [this] { MakeSeed(); },
                              .take = [this] { TakeSeed(); }};
   const PlannedStage detect = {.stage = RunStage::kDetect,
@@ -37,7 +37,7 @@ std::vector<PlannedStage> Flow::Plan() {
                              .take = [this] { TakeGated(); }};
   PlannedStage refine = {.stage = RunStage::kRefine,
                          .given = {"model", "images", "lights"},
-                         .reads = {out_.Start(), out_.PointsOnObject()},
+                         .reads = {out_.Start(), out_.PointsOnObject(), out_.Outline()},
                          .options = {"refine"},
                          .leaves = {out_.Mesh(), out_.LevelSetFile(), out_.Lights(), out_.Refined(), out_.Contacts()},
                          .make = [this] { RefineSurface(); },

@@ -11,6 +11,7 @@
 #include "geometry/triangle_mesh.h"
 #include "io/image_source.h"
 #include "pipeline/config.h"
+#include "silhouette/outline.h"
 
 namespace glint {
 
@@ -18,8 +19,9 @@ struct SeedStageResult {
   TriangleMesh mesh;                // closed, oriented outward, in the model's frame; empty: `warnings` say why
   TriangleMesh start;               // what refinement starts on: `mesh` faired through the points, or as it was given
   std::vector<uint8_t> point_used;  // a scene point: lies on the object
-  TriangleMesh points;              // the scene's, coloured by what became of them; empty for a given mesh
-  std::string report;               // one line for people
+  std::vector<OutlineSample> outline;  // of the object, as far as the views agree on it
+  TriangleMesh points;                 // the scene's, coloured by what became of them; empty for a given mesh
+  std::string report;                  // one line for people
   std::vector<std::string> notes;
   std::vector<std::string> warnings;
 };

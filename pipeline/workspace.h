@@ -38,6 +38,7 @@ class Workspace {
   std::filesystem::path Start() const { return Stages() / "start.ply"; }
   std::filesystem::path Points() const { return Stages() / "points.ply"; }
   std::filesystem::path PointsOnObject() const { return Stages() / "points_on_object.txt"; }
+  std::filesystem::path Outline() const { return Stages() / "outline.txt"; }
   std::filesystem::path Candidates() const { return Stages() / "candidates.json"; }
   std::filesystem::path StageLights() const { return Stages() / "lights.json"; }
   std::filesystem::path Gated() const { return Stages() / "highlights.json"; }

@@ -4,6 +4,7 @@
 #include "pipeline/batch_file.h"
 #include "pipeline/config_file.h"
 #include "pipeline/file_hashes.h"
+#include "pipeline/outline_file.h"
 #include "pipeline/similarity.h"
 #include "pipeline/stage_record.h"
 #include "pipeline/summary_json.h"
@@ -113,6 +114,31 @@ void RunFlags(std::string_view bytes) {
   Try([&] { ReadFlags(path, 4); });
 }
 
+void RunOutline(std::string_view bytes) {
+  const auto path = ScratchFile("outline.txt", bytes);
+  Try([&] {
+    // What was read is what is written.
+    const std::vector<OutlineSample> read = ReadOutline(path, 4);
+    WriteOutline(path, read);
+    if (ReadOutline(path, 4).size() != read.size()) std::abort();
+  });
+}
+
+std::vector<std::string> OutlineSeeds() {
+  OutlineSample s;
+  s.view = 3;
+  s.px = {1.5, 2};
+  s.ray = Eigen::Vector3d(0.6, 0, 0.8);
+  s.normal = Eigen::Vector3d(0, 1, 0);
+  s.near = 1;
+  s.depth = 1.5;
+  s.far = 2;
+  s.sigma = 1e-3;
+  const auto path = Scratch::Folder() / "written.txt";
+  WriteOutline(path, {s, s});
+  return {BytesOf(path)};
+}
+
 // What a stage left of itself, and the summary within it.
 void RunStageRecord(std::string_view bytes) {
   const auto record = ReadStageRecord(ScratchFile("record.json", bytes));
@@ -215,7 +241,8 @@ std::vector<Target> TextTargets() {
           {"batch_yaml", RunBatch, BatchSeeds},
           {"hashes_json", RunHashes, HashesSeeds},
           {"similarity_json", RunSimilarity, SimilaritySeeds},
-          {"flags", RunFlags, FlagSeeds}};
+          {"flags", RunFlags, FlagSeeds},
+          {"outline", RunOutline, OutlineSeeds}};
 }
 
 }  // namespace glint::fuzz
