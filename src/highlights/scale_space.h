@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// Level l is the map halved l times; its pixel (x, y) is centred on pixel (x, y) << l of the map.
+// Level l is the map, smoothed a little and halved l times; its pixel (x, y) is centred on pixel (x, y) << l of the map.
 std::vector<cv::Mat> BrightnessPyramid(const cv::Mat& map, int min_side_px = 12);
 
 struct Blob {
