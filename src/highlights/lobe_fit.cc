@@ -3,159 +3,104 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
+
+#include "highlights/lobe_kernel.h"
 
 namespace glint {
 namespace {
 
-// log amplitude, body, peak x, y, the factor of q: a, c, e, the skew: k, m, the bend b
-constexpr int kNumParams = 10;
-using Params = Eigen::Matrix<double, kNumParams, 1>;
-using Normal = Eigen::Matrix<double, kNumParams, kNumParams>;
+using internal::kNumLobeParams;
+using internal::LobeEquations;
+using internal::LobeParams;
+using internal::LobeSamples;
 
 constexpr double kHalfHeightQ = 0.41421356;  // (1 + q)^-2 = 1/2
 constexpr double kReach = 3.4;               // radius of the fit in standard deviations of the blob (half height: 2)
-constexpr double kSkewSigma = 0.2;           // how lopsided lobes are on curved surfaces
-constexpr double kBendSigma = 0.3;           // and how bent
-constexpr int kMaxIterations = 20;
-constexpr int kManyPixels = 400;
-
-struct Sample {
-  Eigen::Vector2d at;
-  double value;
-  double sigma;  // noise and what no lobe model follows
-  bool saturated;
-};
+constexpr float kSkewSigma = 0.2f;           // how lopsided lobes are on curved surfaces
+constexpr float kBendSigma = 0.3f;           // and how bent
+constexpr int kMaxIterations = 15;
+constexpr int kScaleRounds = 4;       // the noise is estimated anew so many times
+constexpr double kManyPixels = 160;   // fix ten parameters well
+constexpr double kPerMeasurement = 4;  // residuals of neighbouring pixels go together (blur, JPEG, shape)
 
 struct Problem {
-  std::vector<Sample> samples;
-  double body_prior, body_sigma;
-  double log_amplitude_prior;
-  bool sparse;                // every other pixel left out
-  Eigen::Vector2d long_axis;  // the direction of (u, v) along which the blob is longest
+  LobeSamples samples;
+  float body_prior = 0, body_sigma = 1;
+  float log_amplitude_prior = 0;
+  int stride = 1;  // one of so many pixels is looked at
 };
 
-// Value and gradient of the model: w = (u, v) = (a dx + c dy, e dy), bent to w' = w + b (w·long)² across,
-// q = |w'|² exp(k u + m v).
-double Evaluate(const Params& p, double amplitude, const Eigen::Vector2d& long_axis, const Eigen::Vector2d& at,
-                Params* gradient) {
-  const double dx = at.x() - p[2], dy = at.y() - p[3];
-  const double u = p[4] * dx + p[5] * dy, v = p[6] * dy;
-  const double along = long_axis.x() * u + long_axis.y() * v;
-  const double bent_u = u - p[9] * along * along * long_axis.y(), bent_v = v + p[9] * along * along * long_axis.x();
-  const double skew = std::exp(std::clamp(p[7] * u + p[8] * v, -3.0, 3.0));
-  const double q = (bent_u * bent_u + bent_v * bent_v) * skew;
-  const double f = 1 / ((1 + q) * (1 + q));
-  if (gradient) {
-    const double df = -2 * amplitude * f / (1 + q);  // by q
-    const double across = bent_v * long_axis.x() - bent_u * long_axis.y();
-    const double turn = 2 * p[9] * along * across;
-    const double du = df * (2 * (bent_u + turn * long_axis.x()) * skew + p[7] * q);
-    const double dv = df * (2 * (bent_v + turn * long_axis.y()) * skew + p[8] * q);
-    *gradient << amplitude * f, 1, -du * p[4], -(du * p[5] + dv * p[6]), du * dx, du * dy, dv * dy, df * q * u,
-        df * q * v, df * 2 * across * along * along * skew;
-  }
-  return p[1] + amplitude * f;
+void AddPriors(const Problem& problem, const LobeParams& p, LobeEquations& e) {
+  const auto add = [&](int k, float prior, float sigma) {
+    const float weight = 1 / (sigma * sigma), off = p[k] - prior;
+    e.cost += weight * off * off;
+    e.hessian(k, k) += weight;
+    e.rhs[k] -= weight * off;
+  };
+  add(0, problem.log_amplitude_prior, 2);
+  add(1, problem.body_prior, problem.body_sigma);
+  add(7, 0, kSkewSigma);
+  add(8, 0, kSkewSigma);
+  add(9, 0, kBendSigma);
 }
 
-// Normal equations of the weighted residuals and the robust cost.
-double Linearise(const Problem& problem, const Params& p, double scale, Normal* hessian, Params* rhs) {
-  // The sum of log(1 + ratio²), as the logarithm of products that cannot overflow.
-  double log_sum = 0, product = 1;
-  if (hessian) {
-    hessian->setZero();
-    rhs->setZero();
-  }
-  Params g;
-  const double amplitude = std::exp(p[0]);
-  for (const Sample& s : problem.samples) {
-    const double r = (Evaluate(p, amplitude, problem.long_axis, s.at, hessian ? &g : nullptr) - s.value) / s.sigma;
-    if (s.saturated && r > 0) continue;  // at least that bright
-    const double ratio = r / scale;
-    product *= 1 + ratio * ratio;
-    if (product > 1e100) {
-      log_sum += std::log(product);
-      product = 1;
-    }
-    if (!hessian) continue;
-    const double w = 1 / (1 + ratio * ratio) / (s.sigma * s.sigma);
-    hessian->noalias() += w * g * g.transpose();
-    *rhs -= w * r * s.sigma * g;
-  }
-  double cost = scale * scale * (log_sum + std::log(product));
-  const double body = (p[1] - problem.body_prior) / problem.body_sigma;
-  const double log_amplitude = (p[0] - problem.log_amplitude_prior) / 2;
-  const double skew_weight = 1 / (kSkewSigma * kSkewSigma);
-  const double bend_weight = 1 / (kBendSigma * kBendSigma);
-  cost += body * body + log_amplitude * log_amplitude + skew_weight * p.segment<2>(7).squaredNorm() +
-          bend_weight * p[9] * p[9];
-  if (hessian) {
-    (*hessian)(1, 1) += 1 / (problem.body_sigma * problem.body_sigma);
-    (*rhs)[1] -= body / problem.body_sigma;
-    (*hessian)(0, 0) += 0.25;
-    (*rhs)[0] -= log_amplitude / 2;
-    hessian->diagonal().segment<2>(7).array() += skew_weight;
-    rhs->segment<2>(7) -= skew_weight * p.segment<2>(7);
-    (*hessian)(9, 9) += bend_weight;
-    (*rhs)[9] -= bend_weight * p[9];
-  }
-  return cost;
+void Linearise(const Problem& problem, const LobeParams& p, float scale, LobeEquations& e) {
+  internal::LineariseLobe(problem.samples, p, scale, e);
+  AddPriors(problem, p, e);
 }
 
-// Residuals of the pixels that count at the current parameters, in units of their sigma.
-std::vector<double> AbsoluteResiduals(const Problem& problem, const Params& p) {
-  std::vector<double> residuals;
-  residuals.reserve(problem.samples.size());
-  const double amplitude = std::exp(p[0]);
-  for (const Sample& s : problem.samples) {
-    const double r = (Evaluate(p, amplitude, problem.long_axis, s.at, nullptr) - s.value) / s.sigma;
-    if (!s.saturated || r < 0) residuals.push_back(std::abs(r));
-  }
-  return residuals;
+// Of the residuals of the pixels that say something, in units of their sigma.
+float RobustScale(const Problem& problem, const LobeParams& p) {
+  alignas(64) std::array<float, LobeSamples::kMost> residuals;
+  internal::LobeResiduals(problem.samples, p, residuals.data());
+  size_t n = 0;
+  for (size_t i = 0; i < problem.samples.count; ++i)
+    if (residuals[i] != 0) residuals[n++] = std::abs(residuals[i]);
+  if (n == 0) return 1;
+  std::nth_element(residuals.begin(), residuals.begin() + n / 2, residuals.begin() + n);
+  return std::max(1.4826f * residuals[n / 2], 0.3f);
 }
 
-double RobustScale(std::vector<double> residuals) {
-  if (residuals.empty()) return 1;
-  std::nth_element(residuals.begin(), residuals.begin() + residuals.size() / 2, residuals.end());
-  return std::max(1.4826 * residuals[residuals.size() / 2], 0.3);
-}
-
-bool Minimise(const Problem& problem, Params& p, double& scale) {
-  double lambda = 1e-2;
-  scale = RobustScale(AbsoluteResiduals(problem, p));
-  Normal hessian;
-  Params rhs;
-  double cost = Linearise(problem, p, scale, &hessian, &rhs);
+bool Minimise(const Problem& problem, LobeParams& p, float& scale) {
+  float lambda = 1e-2f;
+  scale = RobustScale(problem, p);
+  LobeEquations now, then;
+  Linearise(problem, p, scale, now);
+  int scale_rounds = 1;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    Normal damped = hessian;
+    internal::LobeNormal damped = now.hessian;
     damped.diagonal() *= 1 + lambda;
-    damped.diagonal().array() += 1e-12;
-    const Params step = damped.ldlt().solve(rhs);
-    const Params next = p + step;
-    const double next_cost = next.allFinite() ? Linearise(problem, next, scale, nullptr, nullptr) : cost + 1;
-    if (!(next_cost < cost)) {
+    damped.diagonal().array() += 1e-9f;
+    const LobeParams step = damped.llt().solve(now.rhs);
+    const LobeParams next = p + step;
+    if (next.allFinite()) Linearise(problem, next, scale, then);
+    if (!next.allFinite() || !(then.cost < now.cost)) {
       lambda *= 8;
-      if (lambda > 1e8) break;
+      if (lambda > 1e6f) break;
       continue;
     }
-    const bool done = step.segment<2>(2).norm() < 1e-3 && cost - next_cost < 1e-4 * cost;
+    const bool done = step.segment<2>(2).norm() < 2e-3f && now.cost - then.cost < 1e-3f * now.cost;
     p = next;
-    lambda = std::max(lambda / 6, 1e-9);
-    scale = RobustScale(AbsoluteResiduals(problem, p));
-    cost = Linearise(problem, p, scale, &hessian, &rhs);
+    lambda = std::max(lambda / 6, 1e-7f);
+    std::swap(now, then);
     if (done) break;
+    if (scale_rounds == kScaleRounds) continue;
+    ++scale_rounds;
+    scale = RobustScale(problem, p);
+    Linearise(problem, p, scale, now);
   }
   return p.allFinite();
 }
 
-Problem Gather(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& centroid, const Eigen::Matrix2d& moments,
-               double body, double peak_value, double saturation) {
-  Problem problem;
+void Gather(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& centroid, const Eigen::Matrix2d& moments,
+            double body, double peak_value, double saturation, Problem& problem) {
   const double rise = peak_value - body;
-  problem.body_prior = body;
-  problem.body_sigma = 0.15 * rise + 0.01;
-  problem.log_amplitude_prior = std::log(rise);
+  problem.body_prior = static_cast<float>(body);
+  problem.body_sigma = static_cast<float>(0.15 * rise + 0.01);
+  problem.log_amplitude_prior = static_cast<float>(std::log(rise));
   const Eigen::Matrix2d shape = moments + 0.25 * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d inverse = shape.inverse();
   const double rx = kReach * std::sqrt(shape(0, 0)), ry = kReach * std::sqrt(shape(1, 1));
@@ -163,17 +108,53 @@ Problem Gather(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& c
   const int x1 = std::min(map.cols - 1, static_cast<int>(std::floor(centroid.x() + rx)));
   const int y0 = std::max(0, static_cast<int>(std::ceil(centroid.y() - ry)));
   const int y1 = std::min(map.rows - 1, static_cast<int>(std::floor(centroid.y() + ry)));
-  // A few hundred pixels fix nine parameters; of more every other one is left out, as on a chessboard.
-  const bool sparse = problem.sparse = (x1 - x0 + 1) * (y1 - y0 + 1) > kManyPixels;
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0 + (sparse ? (x0 + y) % 2 : 0); x <= x1; x += sparse ? 2 : 1) {
-      if (!mask.empty() && !mask.ptr<uint8_t>(y)[x]) continue;
-      const Eigen::Vector2d at(x, y);
-      if ((at - centroid).dot(inverse * (at - centroid)) > kReach * kReach) continue;
-      const double value = map.ptr<uint16_t>(y)[x] / 65535.0;
-      problem.samples.push_back({at, value, 0.004 + 0.01 * rise + 0.03 * std::abs(value - body), value >= saturation});
+  // Of many pixels only some are looked at, spread like the knights of a chessboard.
+  const double area = M_PI * kReach * kReach * std::sqrt(shape.determinant());
+  const int stride = problem.stride = std::max(1, static_cast<int>(std::ceil(area / kManyPixels)));
+  const int turn = static_cast<int>(std::lround(0.382 * stride));
+  for (int y = y0; y <= y1; ++y) {
+    const uint16_t* row = map.ptr<uint16_t>(y);
+    const uint8_t* in_mask = mask.empty() ? nullptr : mask.ptr<uint8_t>(y);
+    const double dy = y - centroid.y();
+    for (int x = x0 + (stride - x0 % stride + y % stride * turn) % stride; x <= x1; x += stride) {
+      if (in_mask && !in_mask[x]) continue;
+      const double dx = x - centroid.x();
+      if (dx * (inverse(0, 0) * dx + 2 * inverse(0, 1) * dy) + inverse(1, 1) * dy * dy > kReach * kReach) continue;
+      const double value = row[x] / 65535.0;
+      const double sigma = 0.004 + 0.01 * rise + 0.03 * std::abs(value - body);
+      problem.samples.Add(static_cast<float>(dx), static_cast<float>(dy), static_cast<float>(value),
+                          static_cast<float>(sigma), value >= saturation);
     }
-  return problem;
+  }
+}
+
+// Where the fit begins: the blob as an upright lobe.
+LobeParams Start(Problem& problem, const Eigen::Matrix2d& moments) {
+  const Eigen::Matrix2d q = kHalfHeightQ / 4 * (moments + 0.1 * Eigen::Matrix2d::Identity()).inverse();
+  const double a = std::sqrt(q(0, 0)), c = q(0, 1) / a, e = std::sqrt(std::max(q(1, 1) - c * c, 1e-9));
+  LobeParams p = LobeParams::Zero();
+  p[0] = problem.log_amplitude_prior + (problem.samples.saturated_count > 0 ? 0.7f : 0.1f);
+  p[1] = problem.body_prior;
+  p.segment<3>(4) << static_cast<float>(a), static_cast<float>(c), static_cast<float>(e);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  const Eigen::Vector2d major = axes.computeDirect(moments).eigenvectors().col(1);
+  problem.samples.long_axis =
+      Eigen::Vector2d(a * major.x() + c * major.y(), e * major.y()).normalized().cast<float>();
+  return p;
+}
+
+// Mean deviation of the unsaturated pixels, in units of the rise.
+double ProfileError(const Problem& problem, const LobeParams& p, double rise) {
+  alignas(64) std::array<float, LobeSamples::kMost> residuals;
+  const LobeSamples& s = problem.samples;
+  internal::LobeResiduals(s, p, residuals.data());
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < s.count; ++i) {
+    if (s.saturated[i] > 0) continue;
+    sum += std::min<double>(std::abs(residuals[i]) / s.inverse_sigma[i], 0.5 * rise);
+    ++count;
+  }
+  return sum / std::max(count, 1.0) / rise;
 }
 
 }  // namespace
@@ -181,49 +162,31 @@ Problem Gather(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& c
 LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& centroid,
                 const Eigen::Matrix2d& moments, double body, double peak_value, double saturation) {
   LobeFit fit;
-  Problem problem = Gather(map, mask, centroid, moments, body, peak_value, saturation);
-  const size_t num_saturated =
-      std::count_if(problem.samples.begin(), problem.samples.end(), [](const Sample& s) { return s.saturated; });
-  if (problem.samples.size() < num_saturated + kNumParams + 1) return fit;
-
-  const Eigen::Matrix2d q = kHalfHeightQ / 4 * (moments + 0.1 * Eigen::Matrix2d::Identity()).inverse();
-  Params p;
-  p[0] = problem.log_amplitude_prior + (num_saturated > 0 ? 0.7 : 0.1);
-  p[1] = body;
-  p.segment<2>(2) = centroid;
-  p[4] = std::sqrt(q(0, 0));
-  p[5] = q(0, 1) / p[4];
-  p[6] = std::sqrt(std::max(q(1, 1) - p[5] * p[5], 1e-9));
-  p.tail<3>().setZero();
-  const Eigen::Vector2d major = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moments).eigenvectors().col(1);
-  problem.long_axis = Eigen::Vector2d(p[4] * major.x() + p[5] * major.y(), p[6] * major.y()).normalized();
-  double scale = 1;
+  Problem problem;
+  Gather(map, mask, centroid, moments, body, peak_value, saturation, problem);
+  LobeSamples& samples = problem.samples;
+  if (samples.count < samples.saturated_count + kNumLobeParams + 1) return fit;
+  samples.Finish();
+  LobeParams p = Start(problem, moments);
+  float scale = 1;
   if (!Minimise(problem, p, scale)) return fit;
 
-  const Eigen::Vector2d moved = p.segment<2>(2) - centroid;
+  const Eigen::Vector2d moved = p.segment<2>(2).cast<double>();
   if (moved.dot((moments + 0.25 * Eigen::Matrix2d::Identity()).inverse() * moved) > 9) return fit;
-  Normal hessian;
-  Params rhs;
-  Linearise(problem, p, scale, &hessian, &rhs);
-  const Normal inverse = hessian.ldlt().solve(Normal::Identity());
+  LobeEquations equations;
+  Linearise(problem, p, scale, equations);
+  Eigen::Matrix<double, kNumLobeParams, 2> of_peak = Eigen::Matrix<double, kNumLobeParams, 2>::Zero();
+  of_peak.block<2, 2>(2, 0).setIdentity();
+  const Eigen::Matrix2d inverse = equations.hessian.cast<double>().ldlt().solve(of_peak).block<2, 2>(2, 0);
   if (!inverse.allFinite()) return fit;
 
-  fit.amplitude = std::exp(p[0]);
-  double sum = 0, count = 0;
-  for (const Sample& s : problem.samples) {
-    if (s.saturated) continue;
-    const double r = std::abs(Evaluate(p, fit.amplitude, problem.long_axis, s.at, nullptr) - s.value);
-    sum += std::min(r, 0.5 * (peak_value - body));
-    ++count;
-  }
   fit.ok = true;
-  fit.peak = p.segment<2>(2);
-  // Residuals of neighbouring pixels go together (blur, JPEG, shape): about four pixels make one measurement.
-  fit.covariance = (problem.sparse ? 2 : 4) * scale * scale * inverse.block<2, 2>(2, 2);
-  fit.covariance = (0.5 * (fit.covariance + fit.covariance.transpose())).eval();
+  fit.amplitude = std::exp(p[0]);
+  fit.peak = centroid + moved;
+  fit.covariance = std::max(1.0, kPerMeasurement / problem.stride) * scale * scale * 0.5 * (inverse + inverse.transpose());
   fit.body = p[1];
-  fit.profile_error = sum / std::max(count, 1.0) / (peak_value - body);
-  fit.saturated_fraction = double(num_saturated) / problem.samples.size();
+  fit.profile_error = ProfileError(problem, p, peak_value - body);
+  fit.saturated_fraction = double(samples.saturated_count) / samples.count;
   return fit;
 }
 
