@@ -10,6 +10,7 @@
 #include "highlights/brightness.h"
 #include "highlights/lobe_fit.h"
 #include "highlights/lobe_profile.h"
+#include "highlights/place_index.h"
 #include "highlights/scale_space.h"
 #include "highlights/tint.h"
 
@@ -72,16 +73,21 @@ Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, c
 
 // A glint is found again at coarser levels as the middle of its own halo: what has its peak inside a smaller and
 // stronger highlight is that one. Highlights come from fine to coarse.
-void DropHaloes(std::vector<Highlight>& highlights) {
+void DropHaloes(const cv::Size& size, std::vector<Highlight>& highlights) {
   std::vector<Highlight> kept;
+  PlaceIndex places(size.width, size.height);
   for (const Highlight& h : highlights) {
-    const bool halo = std::any_of(kept.begin(), kept.end(), [&](const Highlight& k) {
-      if (k.area_px > h.area_px || k.strength < h.strength) return false;
+    bool halo = false;
+    places.At(h.px, [&](size_t index) {
+      const Highlight& k = kept[index];
+      if (k.area_px > h.area_px || k.strength < h.strength) return;
       const Eigen::Vector2d d = h.px - k.px;
       const double reach = 4 * k.moments_px.trace();
-      return d.squaredNorm() < reach && d.dot(k.moments_px.inverse() * d) < 4;
+      halo |= d.squaredNorm() < reach && d.dot(k.moments_px.inverse() * d) < 4;
     });
-    if (!halo) kept.push_back(h);
+    if (halo) continue;
+    places.Put(kept.size(), h.px, 2 * h.moments_px.diagonal().cwiseSqrt());
+    kept.push_back(h);
   }
   highlights = std::move(kept);
 }
@@ -136,17 +142,16 @@ void DetectOptions::Visit(OptionVisitor& v) {
 std::vector<Highlight> DetectHighlights(const cv::Mat& image_bgr, const cv::Mat& mask, uint32_t view,
                                         const DetectOptions& options) {
   GLINT_CHECK(mask.empty() || (mask.size() == image_bgr.size() && mask.type() == CV_8UC1));
-  const cv::Mat map = LinearMinChannel(image_bgr);
-  const std::vector<cv::Mat> pyramid = BrightnessPyramid(map);
+  const std::vector<cv::Mat> pyramid = BrightnessPyramid(LinearMinChannel(image_bgr));
   const std::vector<cv::Mat> masks = MaskPyramid(mask, pyramid);
-  const double max_size_px = options.max_size_rel * std::hypot(map.cols, map.rows);
+  const double max_size_px = options.max_size_rel * std::hypot(image_bgr.cols, image_bgr.rows);
   const std::vector<Blob> blobs = FindBlobs(pyramid, masks, {options.min_strength, options.min_contrast, max_size_px});
 
   std::vector<Highlight> highlights;
   for (const Blob& blob : blobs)
     highlights.push_back(Describe(image_bgr, blob, pyramid[blob.level], masks.empty() ? cv::Mat() : masks[blob.level],
                                   view, max_size_px, options));
-  DropHaloes(highlights);
+  DropHaloes(image_bgr.size(), highlights);
   std::stable_sort(highlights.begin(), highlights.end(), [](const Highlight& a, const Highlight& b) {
     if (a.strength != b.strength) return a.strength > b.strength;
     return a.px.y() != b.px.y() ? a.px.y() < b.px.y() : a.px.x() < b.px.x();

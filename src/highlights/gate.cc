@@ -10,6 +10,7 @@
 #include "core/check.h"
 #include "core/median.h"
 #include "core/parallel.h"
+#include "highlights/consensus.h"
 #include "highlights/exposure.h"
 #include "highlights/mirror_test.h"
 #include "highlights/paint_test.h"
@@ -30,7 +31,8 @@ struct Explanation {
   double error_deg = std::numeric_limits<double>::infinity();  // half vector against the nearest of the normals
   double incidence_deg = 0;
   bool ambiguous = false;
-  SurfaceSample at;  // the sample that agrees best
+  SurfaceSample at;      // the sample that agrees best
+  SurfaceSample middle;  // where the ray meets the seed, or nearest to it
 };
 
 // The light that is mirrored best by any of the samples; those in the seed's shadow do not count.
@@ -100,6 +102,7 @@ Verdict Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSu
     return verdict;
   }
   verdict.explanation = Explain(view, surface, lights, samples);
+  verdict.explanation.middle = samples.front();
   const Explanation& e = verdict.explanation;
   if (e.light < 0 || e.error_deg > options.max_normal_error_deg) {
     verdict.status = HighlightStatus::kWrongNormal;
@@ -115,6 +118,29 @@ Verdict Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSu
   else if (*kept > options.paint_ratio)
     verdict.status = HighlightStatus::kStaysPut;
   return verdict;
+}
+
+// See consensus.h.
+void RejectUnlike(const Scene& scene, const SeedSurface& surface, const std::vector<Light>& lights,
+                  const std::vector<Highlight>& highlights, const std::vector<size_t>& judged,
+                  std::vector<Verdict>& verdicts) {
+  std::vector<size_t> accepted;
+  std::vector<SeenOnSeed> seen;
+  for (size_t k = 0; k < judged.size(); ++k) {
+    if (verdicts[k].status != HighlightStatus::kAccepted) continue;
+    const Explanation& e = verdicts[k].explanation;
+    const Highlight& h = highlights[judged[k]];
+    const View& view = scene.views[h.view];
+    const Eigen::Vector3d half = HalfVector(lights[e.light], view.cam_from_world, e.middle.position);
+    accepted.push_back(k);
+    seen.push_back(
+        {e.light, AngleDeg(half, e.middle.normal), MirrorTest(view, surface, lights[e.light], h, e.middle).WidthDeg()});
+  }
+  const std::vector<Unlike> unlike = FindUnlike(seen, static_cast<int>(lights.size()));
+  for (size_t i = 0; i < accepted.size(); ++i) {
+    if (unlike[i] == Unlike::kNormal) verdicts[accepted[i]].status = HighlightStatus::kWrongNormal;
+    if (unlike[i] == Unlike::kWidth) verdicts[accepted[i]].status = HighlightStatus::kWrongSize;
+  }
 }
 
 // See GateHighlights(): what is much fainter than a light's strong highlights.
@@ -210,6 +236,7 @@ void GateHighlights(const Scene& scene, const ImageSource& images, const Triangl
     verdicts[k] = Judge(scene, brightness, surface, lights, options, highlights[judged[k]]);
     progress.Advance();
   });
+  RejectUnlike(scene, surface, lights, highlights, judged, verdicts);
   RejectFaint(highlights, brightness, judged, lights.size(), options.min_relative_strength, verdicts);
   for (size_t k = 0; k < judged.size(); ++k) {
     Highlight& h = highlights[judged[k]];

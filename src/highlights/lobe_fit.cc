@@ -21,9 +21,9 @@ constexpr double kHalfHeightQ = 0.41421356;  // (1 + q)^-2 = 1/2
 constexpr double kReach = 3.4;               // radius of the fit in standard deviations of the blob (half height: 2)
 constexpr float kSkewSigma = 0.2f;           // how lopsided lobes are on curved surfaces
 constexpr float kBendSigma = 0.3f;           // and how bent
-constexpr int kMaxIterations = 15;
-constexpr int kScaleRounds = 4;       // the noise is estimated anew so many times
-constexpr double kManyPixels = 160;   // fix ten parameters well
+constexpr int kMaxIterations = 10;
+constexpr int kScaleRounds = 3;        // the noise is estimated anew so many times
+constexpr double kManyPixels = 160;    // fix ten parameters well
 constexpr double kPerMeasurement = 4;  // residuals of neighbouring pixels go together (blur, JPEG, shape)
 
 struct Problem {
@@ -64,6 +64,31 @@ float RobustScale(const Problem& problem, const LobeParams& p) {
   return std::max(1.4826f * residuals[n / 2], 0.3f);
 }
 
+// Cholesky's decomposition with the diagonal raised by `lambda`; not finite where the matrix is not definite.
+LobeParams Solve(const internal::LobeNormal& matrix, const LobeParams& rhs, float lambda) {
+  internal::LobeNormal lower;
+  LobeParams x;
+  for (int j = 0; j < kNumLobeParams; ++j) {
+    float diagonal = matrix(j, j) * (1 + lambda) + 1e-9f;
+    for (int k = 0; k < j; ++k) diagonal -= lower(j, k) * lower(j, k);
+    const float inverse = 1 / std::sqrt(diagonal);
+    lower(j, j) = inverse;
+    float value = rhs[j];
+    for (int k = 0; k < j; ++k) value -= lower(j, k) * x[k];
+    x[j] = value * inverse;
+    for (int i = j + 1; i < kNumLobeParams; ++i) {
+      float sum = matrix(i, j);
+      for (int k = 0; k < j; ++k) sum -= lower(i, k) * lower(j, k);
+      lower(i, j) = sum * inverse;
+    }
+  }
+  for (int j = kNumLobeParams - 1; j >= 0; --j) {
+    for (int i = j + 1; i < kNumLobeParams; ++i) x[j] -= lower(i, j) * x[i];
+    x[j] *= lower(j, j);
+  }
+  return x;
+}
+
 bool Minimise(const Problem& problem, LobeParams& p, float& scale) {
   float lambda = 1e-2f;
   scale = RobustScale(problem, p);
@@ -71,18 +96,16 @@ bool Minimise(const Problem& problem, LobeParams& p, float& scale) {
   Linearise(problem, p, scale, now);
   int scale_rounds = 1;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    internal::LobeNormal damped = now.hessian;
-    damped.diagonal() *= 1 + lambda;
-    damped.diagonal().array() += 1e-9f;
-    const LobeParams step = damped.llt().solve(now.rhs);
+    const LobeParams step = Solve(now.hessian, now.rhs, lambda);
     const LobeParams next = p + step;
+    const bool small = step.segment<2>(2).norm() < 2e-3f;
     if (next.allFinite()) Linearise(problem, next, scale, then);
     if (!next.allFinite() || !(then.cost < now.cost)) {
-      lambda *= 8;
-      if (lambda > 1e6f) break;
+      if (small || lambda > 1e6f) break;
+      lambda *= 10;
       continue;
     }
-    const bool done = step.segment<2>(2).norm() < 2e-3f && now.cost - then.cost < 1e-3f * now.cost;
+    const bool done = small && now.cost - then.cost < 1e-3f * now.cost;
     p = next;
     lambda = std::max(lambda / 6, 1e-7f);
     std::swap(now, then);
@@ -138,8 +161,7 @@ LobeParams Start(Problem& problem, const Eigen::Matrix2d& moments) {
   p.segment<3>(4) << static_cast<float>(a), static_cast<float>(c), static_cast<float>(e);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   const Eigen::Vector2d major = axes.computeDirect(moments).eigenvectors().col(1);
-  problem.samples.long_axis =
-      Eigen::Vector2d(a * major.x() + c * major.y(), e * major.y()).normalized().cast<float>();
+  problem.samples.long_axis = Eigen::Vector2d(a * major.x() + c * major.y(), e * major.y()).normalized().cast<float>();
   return p;
 }
 
@@ -183,7 +205,8 @@ LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& 
   fit.ok = true;
   fit.amplitude = std::exp(p[0]);
   fit.peak = centroid + moved;
-  fit.covariance = std::max(1.0, kPerMeasurement / problem.stride) * scale * scale * 0.5 * (inverse + inverse.transpose());
+  fit.covariance =
+      std::max(1.0, kPerMeasurement / problem.stride) * scale * scale * 0.5 * (inverse + inverse.transpose());
   fit.body = p[1];
   fit.profile_error = ProfileError(problem, p, peak_value - body);
   fit.saturated_fraction = double(samples.saturated_count) / samples.count;

@@ -6,10 +6,12 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "highlights/lobe_kernel.cc"
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
-#include <hwy/foreach_target.h>  // NOLINT: compiles this file once a target
+// What compiles this file once a target comes first.
+// clang-format off
+#include <hwy/foreach_target.h>  // NOLINT
 #include <hwy/highway.h>
-
 #include <hwy/contrib/math/math-inl.h>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace glint::internal::HWY_NAMESPACE {
@@ -55,8 +57,7 @@ struct Model {
 V Residual(const LobeSamples& samples, size_t i, Model& model) {
   const D d;
   model.At(hn::Load(d, samples.x + i), hn::Load(d, samples.y + i));
-  const V r =
-      hn::Mul(hn::Sub(model.Value(), hn::Load(d, samples.value + i)), hn::Load(d, samples.inverse_sigma + i));
+  const V r = hn::Mul(hn::Sub(model.Value(), hn::Load(d, samples.value + i)), hn::Load(d, samples.inverse_sigma + i));
   const V zero = hn::Zero(d);
   const auto says_nothing = hn::And(hn::Gt(hn::Load(d, samples.saturated + i), zero), hn::Gt(r, zero));
   return hn::IfThenElse(says_nothing, zero, r);

@@ -17,6 +17,7 @@ constexpr double kMaxStretch = 3;
 constexpr size_t kEnoughViews = 6;
 constexpr double kMinShading = 0.3;
 constexpr double kDark = 0.3;  // of the rise
+constexpr double kLarge = 3;   // map pixels
 
 // How bright the light makes paint at the surface point in this view (Lambert), up to a constant; one if it stands
 // still.
@@ -106,9 +107,14 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
   const double pixel_size = brightness.PixelSize(highlight.view);
   const double minor_px =
       2 * std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(highlight.moments_px).eigenvalues()[0]);
-  // Small blobs need some tolerance to be met again; large ones are met anyway, and a wide window would catch marks.
-  const double radius_px = pixel_size * std::clamp(0.5 * minor_px / pixel_size, 1.5, 3.0);
-  const auto peak = brightness.MaxNear(highlight.view, highlight.px, radius_px);
+  // Small blobs need some tolerance to be met again. Of large ones the mean over their middle is compared, in which
+  // small marks that they are seen through count for little.
+  const bool large = 0.5 * minor_px > kLarge * pixel_size;
+  const double radius_px = large ? 0.5 * minor_px : std::max(0.5 * minor_px, 1.5 * pixel_size);
+  const auto look = [&](size_t v, const Eigen::Vector2d& px, double size) {
+    return large ? brightness.MeanNear(v, px, size * radius_px) : brightness.MaxNear(v, px, radius_px);
+  };
+  const auto peak = look(highlight.view, highlight.px, 1);
   const auto body = brightness.MedianAround(highlight.view, highlight.px, highlight.moments_px);
   if (!peak || !body || *peak - *body < 1e-3) return std::nullopt;
 
@@ -116,7 +122,8 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
   const auto rise = [&](const OtherView& other, const Eigen::Vector3d& place) -> std::optional<double> {
     const View& there = scene.views[other.view];
     const auto px = there.Project(place);
-    const auto value = px ? brightness.MaxNear(other.view, *px, radius_px) : std::nullopt;
+    const double size = SizeAt(there, place) / SizeAt(view, place);
+    const auto value = px ? look(other.view, *px, size) : std::nullopt;
     if (!value) return std::nullopt;
     const double body_there = *body * other.shading;
     const double plain = (*value - body_there) / other.shading;
@@ -124,7 +131,6 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
     if (plain < kDark * (*peak - *body)) return plain;
     const auto off_deg = mirror.OffDeg(there, *px);
     if (off_deg && *off_deg < mirror.DarkDeg()) return std::nullopt;
-    const double size = SizeAt(there, place) / SizeAt(view, place);
     const auto around = brightness.MedianAround(other.view, *px, size * size * highlight.moments_px);
     return (*value - std::max(around.value_or(body_there), body_there)) / other.shading;
   };

@@ -8,8 +8,9 @@
 
 namespace glint {
 
-// Level l is the map, smoothed a little and halved l times; its pixel (x, y) is centred on pixel (x, y) << l of the map.
-std::vector<cv::Mat> BrightnessPyramid(const cv::Mat& map, int min_side_px = 12);
+// Level l is the map, smoothed a little and halved l times; its pixel (x, y) is centred on pixel (x, y) << l of the
+// map. The map's own memory becomes level 0.
+std::vector<cv::Mat> BrightnessPyramid(cv::Mat map, int min_side_px = 12);
 
 struct Blob {
   int level = 0;

@@ -2,8 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
 
 #include "highlights/brightness.h"
 
@@ -20,13 +20,13 @@ Eigen::Vector3d ColorAt(const cv::Mat& image, const Eigen::Vector2i& px) {
 Eigen::Vector3d SurroundingColor(const cv::Mat& image, const Blob& blob) {
   constexpr int kSamples = 24;
   const Eigen::Matrix2d root = blob.moments.llt().matrixL();
-  std::vector<double> channel[3];
+  std::array<std::array<double, kSamples>, 3> channel;
   for (int k = 0; k < kSamples; ++k) {
     const double a = 2 * M_PI * k / kSamples;
     const Eigen::Vector2d offset = root * Eigen::Vector2d(std::cos(a), std::sin(a));
     const Eigen::Vector2d at = blob.centroid + 3.2 * offset + 1.5 * offset.normalized();
     const Eigen::Vector3d c = ColorAt(image, (std::ldexp(1.0, blob.level) * at).array().round().cast<int>());
-    for (int i = 0; i < 3; ++i) channel[i].push_back(c[i]);
+    for (int i = 0; i < 3; ++i) channel[i][k] = c[i];
   }
   Eigen::Vector3d color;
   for (int i = 0; i < 3; ++i) {
@@ -38,14 +38,14 @@ Eigen::Vector3d SurroundingColor(const cv::Mat& image, const Blob& blob) {
 
 // Angle between `added` and the nearest non-negative mixture of `white` and `body`, radians.
 double AngleToMixture(const Eigen::Vector3d& added, const Eigen::Vector3d& white, const Eigen::Vector3d& body) {
-  double best = M_PI;
+  double best = -1;  // cosine
   constexpr int kSteps = 8;
   for (int k = 0; k <= kSteps; ++k) {
     const double t = double(k) / kSteps;
     const Eigen::Vector3d mixture = ((1 - t) * white + t * body).normalized();
-    best = std::min(best, std::acos(std::clamp(mixture.dot(added), -1.0, 1.0)));
+    best = std::max(best, mixture.dot(added));
   }
-  return best;
+  return std::acos(std::clamp(best, -1.0, 1.0));
 }
 
 }  // namespace

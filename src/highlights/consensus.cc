@@ -1,0 +1,75 @@
+#include "highlights/consensus.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/median.h"
+
+namespace glint {
+namespace {
+
+constexpr size_t kFewest = 8;
+constexpr double kMinSigmaDeg = 1.5;
+constexpr double kFirstSigmaDeg = 8;
+constexpr double kClearlyOff = 3;       // in standard deviations: what is nearer is not told from the seed's errors
+constexpr double kNarrow = 0.4;         // of the median width
+constexpr double kTellingWidthDeg = 3;  // of sharper gloss the seed's facets decide how wide it looks
+constexpr int kRounds = 30;
+
+double Radians(double deg) { return deg * M_PI / 180; }
+
+// Densities over the angle, in radians: of directions that err by sigma, and of any direction of a hemisphere.
+double OfError(double angle, double sigma) {
+  return angle / (sigma * sigma) * std::exp(-0.5 * angle * angle / (sigma * sigma));
+}
+double OfChance(double angle) { return std::sin(std::min(angle, M_PI / 2)); }
+
+// Angles above this are rather chance than error, degrees.
+double LargestErrorDeg(const std::vector<double>& angles_deg) {
+  double sigma = Radians(kFirstSigmaDeg), share = 0.7;
+  const auto is_error = [&](double angle) {
+    const double error = share * OfError(angle, sigma), chance = (1 - share) * OfChance(angle);
+    return error / std::max(error + chance, 1e-300);
+  };
+  for (int round = 0; round < kRounds; ++round) {
+    double squares = 0, sum = 0;
+    for (double deg : angles_deg) {
+      const double angle = Radians(deg), p = is_error(angle);
+      squares += p * angle * angle;
+      sum += p;
+    }
+    sigma = std::max(std::sqrt(0.5 * squares / std::max(sum, 1e-12)), Radians(kMinSigmaDeg));
+    share = std::clamp(sum / static_cast<double>(angles_deg.size()), 0.05, 0.95);
+  }
+  double limit = kClearlyOff * sigma;
+  while (limit < M_PI / 2 && is_error(limit) > 0.5) limit += Radians(0.1);
+  return limit * 180 / M_PI;
+}
+
+}  // namespace
+
+std::vector<Unlike> FindUnlike(const std::vector<SeenOnSeed>& seen, int num_lights) {
+  std::vector<Unlike> unlike(seen.size(), Unlike::kNo);
+  for (int light = 0; light < num_lights; ++light) {
+    std::vector<double> angles_deg, widths_deg;
+    for (const SeenOnSeed& s : seen)
+      if (s.light == light) angles_deg.push_back(s.off_deg);
+    if (angles_deg.size() < kFewest) continue;
+    const double largest_deg = LargestErrorDeg(angles_deg);
+    for (size_t i = 0; i < seen.size(); ++i) {
+      if (seen[i].light != light) continue;
+      if (seen[i].off_deg > largest_deg)
+        unlike[i] = Unlike::kNormal;
+      else
+        widths_deg.push_back(seen[i].width_deg);
+    }
+    const double width_deg = Median(widths_deg);
+    if (widths_deg.size() < kFewest || width_deg < kTellingWidthDeg) continue;
+    for (size_t i = 0; i < seen.size(); ++i)
+      if (seen[i].light == light && unlike[i] == Unlike::kNo && seen[i].width_deg < kNarrow * width_deg)
+        unlike[i] = Unlike::kWidth;
+  }
+  return unlike;
+}
+
+}  // namespace glint
