@@ -10,25 +10,31 @@ namespace {
 
 constexpr size_t kFewest = 8;
 constexpr double kMinSigmaDeg = 1.5;
-constexpr double kFirstSigmaDeg = 8;
-constexpr double kClearlyOff = 3;       // in standard deviations: what is nearer is not told from the seed's errors
-constexpr double kNarrow = 0.4;         // of the median width
-constexpr double kTellingWidthDeg = 3;  // of sharper gloss the seed's facets decide how wide it looks
+constexpr double kLeastReachDeg = 10;
+constexpr double kMedianOfRayleigh = 1.18;  // in standard deviations
+constexpr double kClearlyOff = 3;           // in standard deviations: what is nearer is not told from the seed's errors
+constexpr double kNarrow = 0.4;             // of the median width
+constexpr double kTellingWidthDeg = 3;      // of sharper gloss the seed's facets decide how wide it looks
 constexpr int kRounds = 30;
 
 double Radians(double deg) { return deg * M_PI / 180; }
 
-// Densities over the angle, in radians: of directions that err by sigma, and of any direction of a hemisphere.
+// Density over the angle (radians) of directions that err by sigma.
 double OfError(double angle, double sigma) {
   return angle / (sigma * sigma) * std::exp(-0.5 * angle * angle / (sigma * sigma));
 }
-double OfChance(double angle) { return std::sin(std::min(angle, M_PI / 2)); }
 
-// Angles above this are rather chance than error, degrees.
-double LargestErrorDeg(const std::vector<double>& angles_deg) {
-  double sigma = Radians(kFirstSigmaDeg), share = 0.7;
+// Angles above this are rather chance than error, degrees. Chance reaches as far as the angles do: what is farther off
+// has not come this far.
+double LargestErrorDeg(std::vector<double> angles_deg) {
+  std::sort(angles_deg.begin(), angles_deg.end());
+  const double farthest = Radians(std::clamp(angles_deg.back(), kLeastReachDeg, 90.0));
+  const auto of_chance = [&](double angle) { return std::sin(std::min(angle, M_PI / 2)) / (1 - std::cos(farthest)); };
+  // The nearer half are mostly errors; theirs is the median.
+  double sigma = std::max(Radians(angles_deg[angles_deg.size() / 4] / kMedianOfRayleigh), Radians(kMinSigmaDeg));
+  double share = 0.5;
   const auto is_error = [&](double angle) {
-    const double error = share * OfError(angle, sigma), chance = (1 - share) * OfChance(angle);
+    const double error = share * OfError(angle, sigma), chance = (1 - share) * of_chance(angle);
     return error / std::max(error + chance, 1e-300);
   };
   for (int round = 0; round < kRounds; ++round) {
@@ -50,12 +56,12 @@ double LargestErrorDeg(const std::vector<double>& angles_deg) {
 
 std::vector<Unlike> FindUnlike(const std::vector<SeenOnSeed>& seen, int num_lights) {
   std::vector<Unlike> unlike(seen.size(), Unlike::kNo);
+  std::vector<double> angles_deg;
+  for (const SeenOnSeed& s : seen) angles_deg.push_back(s.off_deg);
+  if (angles_deg.size() < kFewest) return unlike;
+  const double largest_deg = LargestErrorDeg(angles_deg);
   for (int light = 0; light < num_lights; ++light) {
-    std::vector<double> angles_deg, widths_deg;
-    for (const SeenOnSeed& s : seen)
-      if (s.light == light) angles_deg.push_back(s.off_deg);
-    if (angles_deg.size() < kFewest) continue;
-    const double largest_deg = LargestErrorDeg(angles_deg);
+    std::vector<double> widths_deg;
     for (size_t i = 0; i < seen.size(); ++i) {
       if (seen[i].light != light) continue;
       if (seen[i].off_deg > largest_deg)

@@ -16,8 +16,9 @@ constexpr int kMaxDepths = 81;
 constexpr double kMaxStretch = 3;
 constexpr size_t kEnoughViews = 6;
 constexpr double kMinShading = 0.3;
-constexpr double kDark = 0.3;  // of the rise
-constexpr double kLarge = 3;   // map pixels
+constexpr double kDark = 0.3;     // of the rise
+constexpr double kLarge = 3;      // map pixels
+constexpr double kMiddle = 0.75;  // of the radius at half height
 
 // How bright the light makes paint at the surface point in this view (Lambert), up to a constant; one if it stands
 // still.
@@ -110,7 +111,7 @@ std::optional<double> KeptBrightness(const Scene& scene, const ViewBrightness& b
   // Small blobs need some tolerance to be met again. Of large ones the mean over their middle is compared, in which
   // small marks that they are seen through count for little.
   const bool large = 0.5 * minor_px > kLarge * pixel_size;
-  const double radius_px = large ? 0.5 * minor_px : std::max(0.5 * minor_px, 1.5 * pixel_size);
+  const double radius_px = large ? kMiddle * minor_px : std::max(0.5 * minor_px, 1.5 * pixel_size);
   const auto look = [&](size_t v, const Eigen::Vector2d& px, double size) {
     return large ? brightness.MeanNear(v, px, size * radius_px) : brightness.MaxNear(v, px, radius_px);
   };

@@ -62,12 +62,16 @@ TEST(LobeKernel, SaturatedPixelsOnlyBoundFromBelow) {
   std::array<float, LobeSamples::kMost> residuals;
   LobeResiduals(samples, bright, residuals.data());
   for (size_t i = 0; i < samples.count; ++i) {
-    if (samples.saturated[i] > 0) EXPECT_EQ(residuals[i], 0);
+    if (samples.saturated[i] > 0) {
+      EXPECT_EQ(residuals[i], 0);
+    }
   }
   bright[0] = -1;
   LobeResiduals(samples, bright, residuals.data());
   for (size_t i = 0; i < samples.count; ++i) {
-    if (samples.saturated[i] > 0) EXPECT_LT(residuals[i], 0);
+    if (samples.saturated[i] > 0) {
+      EXPECT_LT(residuals[i], 0);
+    }
   }
 }
 
