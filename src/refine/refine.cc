@@ -26,6 +26,9 @@ namespace glint {
 namespace {
 
 constexpr double kRadians = M_PI / 180;
+// Beyond the band and the way from the seed: for differences, and for what the step itself will move.
+constexpr double kSeedMarginVoxels = 5;
+constexpr double kMaxWayVoxels = 24;  // for memory's sake
 // Standard deviations change slowly over the surface.
 constexpr double kConfidenceVoxelRel = 1.0 / 64;
 // Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
@@ -89,6 +92,7 @@ class Refiner {
   static size_t StepsOfIteration(int level) { return size_t{1} << (2 * level); }
   size_t MaxIterations() const { return static_cast<size_t>(options_.max_iterations); }
   bool RunLevel(double voxel, size_t progress_steps);
+  LevelSet SeedField(double voxel, double half_width_voxels);
   LevelSet Step(const LevelSet& seed_field, bool undecided, StepSummary& summary);
   void TakeSurface(const LevelSet& stepped, const SdfOptions& sdf);
   void UpdatePoints(const LevelSet& field);
@@ -101,6 +105,8 @@ class Refiner {
   const UnitFrame frame_;
   TriangleMesh seed_, surface_;
   LevelSet field_;  // of the surface; empty before the first step
+  LevelSet seed_field_;
+  double way_from_seed_ = 0;  // the largest of the surface's vertices so far
   HighlightContacts highlights_;
   std::vector<SurfacePoint> points_;
   std::vector<Eigen::Matrix3d> point_covariance_;
@@ -189,10 +195,9 @@ void Refiner::TakeSurface(const LevelSet& stepped, const SdfOptions& sdf) {
 
 bool Refiner::RunLevel(double voxel, size_t progress_steps) {
   SdfOptions sdf;
-  sdf.half_width_voxels = std::max(8.0, 2 * options_.half_width_voxels);
-  const LevelSet seed_field = MeshToLevelSet(seed_, voxel, sdf);
   // On the coarse levels contacts may still lie a few voxels off the surface.
   sdf.half_width_voxels = options_.half_width_voxels + (voxel > 1.5 * options_.voxel_rel ? 2 : 0);
+  const LevelSet seed_field = SeedField(voxel, sdf.half_width_voxels);
   if (!field_.empty()) field_ = Resample(field_, voxel, sdf.half_width_voxels);
   for (int k = 0; k < options_.max_iterations; ++k) {
     progress_.ThrowIfCancelled();
@@ -220,11 +225,19 @@ bool Refiner::RunLevel(double voxel, size_t progress_steps) {
   return false;
 }
 
+// The seed's distances wherever a band around the current surface is, which has left it by then.
+LevelSet Refiner::SeedField(double voxel, double half_width_voxels) {
+  for (const Eigen::Vector3d& v : surface_.vertices)
+    if (!seed_field_.empty()) way_from_seed_ = std::max(way_from_seed_, std::abs(seed_field_.Value(v)));
+  SdfOptions sdf;
+  sdf.half_width_voxels = half_width_voxels + std::min(way_from_seed_ / voxel, kMaxWayVoxels) + kSeedMarginVoxels;
+  seed_field_ = MeshToLevelSet(seed_, voxel, sdf);
+  return seed_field_;
+}
+
 void Refiner::MeasureConfidence() {
   const double voxel = std::max(options_.voxel_rel, kConfidenceVoxelRel);
-  SdfOptions sdf;
-  sdf.half_width_voxels = std::max(8.0, 2 * options_.half_width_voxels);
-  const LevelSet seed_field = MeshToLevelSet(seed_, voxel, sdf);
+  const LevelSet seed_field = SeedField(voxel, options_.half_width_voxels + 1);
   const LevelSet field = Resample(field_, voxel, options_.half_width_voxels + 1);
   const std::vector<OrientedPoint> contacts = highlights_.Oriented(), outline = OutlineContacts(outline_, field);
   const StepInput input{field, seed_field, summary_.bends_like_seed, SurfaceArea(surface_), contacts, points_, outline};
