@@ -50,19 +50,19 @@ void LevelSetOptions::Visit(OptionVisitor& v) {
 
 namespace {
 
-// m of DESIGN 3.4: near 1 where no contact reaches, near 0 where one does.
-std::vector<float> SeedTrust(const Band& band, const std::vector<OrientedPoint>& contacts) {
-  std::vector<float> trust(band.size(), 1);
-  ParallelFor(band.size(), 1 << 12, [&](size_t i) {
-    const Eigen::Vector3d x = band.Position(i);
-    double explained = 0;
-    for (const OrientedPoint& contact : contacts) {
-      const double ratio2 = (x - contact.position).squaredNorm() / (contact.reach * contact.reach);
-      if (ratio2 < 9) explained = std::max(explained, std::exp(-0.5 * ratio2 * ratio2));
-    }
-    trust[i] = static_cast<float>(1 - explained);
-  });
-  return trust;
+// A contact explains what faces as it does, not what lies around a rim: cosines of 20 and 60 degrees.
+constexpr double kSameSide = 0.94, kOtherSide = 0.5;
+
+// m of DESIGN 3.4 at a place with a normal: near 1 where no contact reaches, near 0 where one does.
+float SeedTrust(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, const std::vector<OrientedPoint>& contacts) {
+  double explained = 0;
+  for (const OrientedPoint& contact : contacts) {
+    const double ratio2 = (x - contact.position).squaredNorm() / (contact.reach * contact.reach);
+    if (ratio2 > 9) continue;
+    const double alike = std::clamp((contact.normal.dot(normal) - kOtherSide) / (kSameSide - kOtherSide), 0.0, 1.0);
+    explained = std::max(explained, alike * std::exp(-0.5 * ratio2 * ratio2));
+  }
+  return static_cast<float>(1 - explained);
 }
 
 // Of the seed, averaged over the next voxels (1 2 1 along each axis), so that the facets of its mesh are not taken for
@@ -91,17 +91,19 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
   weights.pull_target.resize(band.size());
   if (input.bend_like_seed) weights.reference.resize(band.size());
   static const std::vector<OrientedPoint> kNone;
-  const std::vector<float> trust = SeedTrust(band, options.highlight_weight > 0 ? input.contacts : kNone);
+  const std::vector<OrientedPoint>& contacts = options.highlight_weight > 0 ? input.contacts : kNone;
   const double mu = 1 / std::pow(options.seed_sigma_rel * options.seed_length_rel, 2);
   const double background = input.seed.half_width_voxels() * input.seed.voxel_size();
   ParallelFor(band.size(), 1 << 12, [&](size_t i) {
     const Eigen::Vector3d x = band.Position(i);
     const Eigen::Vector3d g = input.surface.Gradient(x);
     const double length = g.norm();
-    weights.n[i] = (length > 1e-12 ? Eigen::Vector3d(g / length) : Eigen::Vector3d::Zero()).cast<float>();
+    const Eigen::Vector3d normal = length > 1e-12 ? Eigen::Vector3d(g / length) : Eigen::Vector3d::Zero();
+    weights.n[i] = normal.cast<float>();
+    const float trust = SeedTrust(x, normal, contacts);
     const double value = input.seed.Value(x);
     const bool known = std::abs(value) < background - 2 * h;
-    weights.pull[i] = known ? static_cast<float>(mu * area * trust[i]) : 0;
+    weights.pull[i] = known ? static_cast<float>(mu * area * trust) : 0;
     weights.pull_target[i] = static_cast<float>(value);
     if (input.bend_like_seed)
       weights.reference[i] = known ? SmoothValue(input.seed, x) : std::numeric_limits<float>::quiet_NaN();
