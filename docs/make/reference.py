@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """reference.py GLINT OUT: the reference pages, from the program and the Python module themselves."""
 import dataclasses
+import html
 import inspect
 import re
 import subprocess
@@ -30,10 +31,10 @@ def options(program):
                     lines += ["| option | default | range, unit | meaning |", "|---|---|---|---|"]
                     table = True
                 meaning, limits = re.fullmatch(r"(.*?)(?: \(([^()]*(?:\([^()]*\)[^()]*)*)\))?", said).groups()
-                cells = [f"`{'.'.join(sections)}`", f"`{value}`", limits or "", meaning]
+                cells = [f"`{'.'.join(sections)}`", f"`{value}`", html.escape(limits or ""), html.escape(meaning)]
                 lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
             else:
-                lines += ["", "#" * min(2 + indent, 4) + " " + ".".join(sections), "", said, ""]
+                lines += ["", "#" * min(2 + indent, 4) + " " + ".".join(sections), "", html.escape(said), ""]
                 table = False
     return lines
 

@@ -12,7 +12,7 @@ PAGE = """<!DOCTYPE html>
 <title>{title} - Glint</title><style>
 :root {{ color-scheme: light dark; }}
 body {{ font: 16px/1.55 system-ui, sans-serif; max-width: 60rem; margin: 0 auto; padding: 1rem 1.2rem 4rem; }}
-nav a {{ margin-right: 1rem; }} img {{ max-width: 100%; height: auto; background: #fff; }}
+nav {{ display: flex; flex-wrap: wrap; gap: .2rem 1rem; }} img {{ max-width: 100%; height: auto; background: #fff; }}
 pre {{ padding: .8rem 1rem; overflow-x: auto; background: #8882; border-radius: .3rem; }}
 code {{ font-size: .92em; }} a {{ color: #2a78c8; }}
 table {{ border-collapse: collapse; display: block; overflow-x: auto; }}
@@ -23,7 +23,7 @@ td, th {{ border-bottom: 1px solid #8885; padding: .3rem .8rem .3rem 0; text-ali
 """
 MENU = [("Documentation", "README.md"), ("Troubleshooting", "troubleshooting.md"), ("Gallery", "gallery.md"),
         ("Options", "reference/options.md"), ("Commands", "reference/commands.md"), ("Python", "reference/python.md"),
-        ("C++", "reference/cpp/index.html")]
+        ("C++", "reference/cpp/files.html")]
 
 
 def html_name(link):

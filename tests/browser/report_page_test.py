@@ -87,6 +87,13 @@ def dark_share(picture):
     return sum(max(row[x : x + 3]) < 60 for row in rows for x in range(0, width * channels, channels)) / (width * height)
 
 
+def surface_share(picture):
+    """Share of the picture's height that is not the background at its left edge, in the column of its middle."""
+    width, height, rows, channels = picture
+    middle = width // 3 * channels
+    return sum(max(abs(row[middle + k] - row[k]) for k in range(3)) > 25 for row in rows) / height
+
+
 def quiet(browser, what):
     said = browser.log()
     expect(not said, f"{what}: nothing on the console ({said})")
@@ -106,6 +113,7 @@ def check_viewer(browser):
         browser.click(f"label[for=show-{thing}]")
     now = pixels(browser)
     expect(difference(last, now) > 0.001, "cameras, rays and lights are drawn")
+    expect(surface_share(last) > 2 * surface_share(now), "the view steps back to have the cameras in the picture")
     browser.click("label[for=mode-zebra]")
     browser.run("for (const t of ['cameras', 'rays', 'lights']) document.getElementById('show-' + t).click()")
     before, after = (share_of(browser, share) for share in (100, 0))

@@ -7,6 +7,7 @@ import { Surface } from './surface.js';
 
 const kFieldOfView = 35;
 const kFilled = 0.86; // of the picture, by the surface
+const kFarthest = 6; // times as far away as fills the picture, to have cameras and lights in it
 const kLowest = 0.42, kHighest = 1.2; // radians above the horizon, to begin with
 
 export class Viewer {
@@ -103,7 +104,8 @@ export class Viewer {
 
   showOverlay(name, visible) {
     this.overlays[name].visible = visible;
-    this.draw();
+    if (this.untouched) this.reset();
+    else this.draw();
   }
 
   setDivide(share) {
@@ -111,7 +113,8 @@ export class Viewer {
     this.draw();
   }
 
-  // From the side of the camera that saw most highlights, a little from above, near enough to fill the picture.
+  // From the side of the camera that saw most highlights, a little from above, near enough to fill the picture with the
+  // surface, or with the cameras and lights that are shown.
   reset() {
     const start = this.data.scene.views[this.data.scene.start];
     const towards = start ? new Vector3(...start.center).normalize() : new Vector3(0.6, 0.4, 1).normalize();
@@ -122,20 +125,39 @@ export class Viewer {
     this.camera.fov = kFieldOfView;
     this.camera.updateProjectionMatrix();
     this.controls.target.set(0, 0, 0);
-    this.camera.position.copy(towards).multiplyScalar(this.distanceToFill(towards));
+    const near = this.distanceToFill(towards, this.positionsOfSurfaces());
+    const far = this.distanceToFill(towards, this.positionsOfOverlays());
+    this.camera.position.copy(towards).multiplyScalar(Math.min(Math.max(near, far), kFarthest * near));
     this.controls.update();
     this.untouched = true;
     this.draw();
   }
 
-  // From where the whole surface is in the picture, and fills it.
-  distanceToFill(towards) {
+  positionsOfSurfaces() {
+    return [this.before, this.after].filter((s) => s).map((s) => s.mesh.positions);
+  }
+
+  positionsOfOverlays() {
+    const found = [];
+    for (const object of [this.overlays.cameras, this.overlays.lights]) {
+      if (!object.visible) continue;
+      object.updateMatrixWorld(true);
+      object.traverse((part) => {
+        if (!part.geometry) return;
+        const at = part.geometry.attributes.position.clone().applyMatrix4(part.matrixWorld);
+        found.push(at.array);
+      });
+    }
+    return found;
+  }
+
+  // From where all the points are in the picture, and fill it.
+  distanceToFill(towards, all) {
     const right = this.up.clone().cross(towards).normalize(), above = towards.clone().cross(right);
     const tall = kFilled * Math.tan((kFieldOfView * Math.PI) / 360), wide = tall * this.camera.aspect;
     let distance = 0.1;
     const at = new Vector3();
-    for (const surface of [this.before, this.after]) {
-      const positions = surface ? surface.mesh.positions : [];
+    for (const positions of all) {
       for (let i = 0; i < positions.length; i += 3) {
         at.fromArray(positions, i);
         distance = Math.max(distance, at.dot(towards) + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall));
