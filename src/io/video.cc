@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 #include <opencv2/videoio.hpp>
+#include <system_error>
 
 #include "core/check.h"
 #include "core/error.h"
@@ -24,8 +26,20 @@ constexpr double kMinFollowed = 0.6;    // of the points
 constexpr double kWindow = 0.5;         // of a step to either side, in which the sharpest frame is taken
 constexpr double kMaxLost = 0.02;       // of the frames that the film's header promises
 
+// A list of other files, which FFmpeg would open: HLS, its own, DASH.
+bool IsPlaylist(const std::filesystem::path& file) {
+  std::string head(16, '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.starts_with("#EXTM3U") || head.starts_with("ffconcat") || head.starts_with("<");
+}
+
+// By FFmpeg alone: for what that cannot read OpenCV would look at cameras on the USB, and take names for patterns of
+// other names or for GStreamer's pipelines. An absolute name is no address of anything else.
 cv::VideoCapture Open(const std::filesystem::path& film) {
-  cv::VideoCapture capture(film.string());
+  cv::VideoCapture capture;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(film, ignored) && !IsPlaylist(film))
+    capture.open(std::filesystem::absolute(film).string(), cv::CAP_FFMPEG);
   if (!capture.isOpened())
     throw InputError(film.string(), "",
                      "expected a film (or a folder of photographs, or a COLMAP project); it cannot "

@@ -68,13 +68,23 @@ TEST(Video, FramesAreSharpAndMove) {
 
 TEST(Video, WhatIsNoFilmIsRefused) {
   const TemporaryFolder folder;
-  WriteFile(folder / "film.mp4", "not a film");
-  try {
-    TrackFrames(folder / "film.mp4", Progress::Silent());
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("film.mp4"));
+  WriteFilm(folder / "real.avi");
+  const std::string real = (folder / "real.avi").string();
+  // The last ones are lists of other files.
+  const std::vector<std::string> texts = {"not a film", "#EXTM3U\n#EXTINF:2,\n" + real + "\n#EXT-X-ENDLIST\n",
+                                          "ffconcat version 1.0\nfile real.avi\n"};
+  for (const std::string& text : texts) {
+    WriteFile(folder / "film.mp4", text);
+    try {
+      TrackFrames(folder / "film.mp4", Progress::Silent());
+      ADD_FAILURE() << text;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), HasSubstr("film.mp4"));
+    }
   }
+  // A pattern that OpenCV takes for a series of pictures.
+  cv::imwrite((folder / "frame_01.png").string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
+  EXPECT_THROW(TrackFrames(folder / "frame_%02d.png", Progress::Silent()), InputError);
 }
 
 }  // namespace
