@@ -193,13 +193,17 @@ class Fitter {
     ParallelFor(tried.size(), 1, [&](size_t t) { Finish(tried[t]); });
     Mixture best;
     for (Mixture& m : tried)
-      if (m.criterion < best.criterion) best = std::move(m);
+      if (m.criterion + kDecisive * Boldness(m) < best.criterion + kDecisive * Boldness(best)) best = std::move(m);
     return best;
   }
 
   std::vector<Light> Starts(const Eigen::VectorXd& unexplained) const {
     std::vector<Light> starts;
     if (options_.allow_distant && options_.allow_world) AddDirections(LightFrame::kWorld, unexplained, starts);
+    // A lamp that is very near is two distant ones to who does not try it so.
+    if (options_.allow_distant && options_.allow_world && options_.allow_point && !starts.empty())
+      for (const double diagonals : {0.8, 2.0})
+        starts.push_back(AtDistance(observations_, starts.front(), center_, diagonals * diagonal_));
     if (options_.allow_distant && options_.allow_camera) AddDirections(LightFrame::kCamera, unexplained, starts);
     if (options_.allow_point && options_.allow_camera)
       starts.push_back({LightType::kPoint, LightFrame::kCamera, Eigen::Vector3d::Zero(), 0});
@@ -238,6 +242,12 @@ class Fitter {
   // Of two kinds that explain about as much the one that is usual: a flash, or a lamp that stands far away.
   static int Boldness(const Light& light) {
     return (light.type == LightType::kPoint) != (light.frame == LightFrame::kCamera);
+  }
+
+  static int Boldness(const Mixture& m) {
+    int sum = 0;
+    for (const Light& light : m.lights) sum += Boldness(light);
+    return sum;
   }
 
   std::vector<Light> OtherKinds(const Light& light) const {
