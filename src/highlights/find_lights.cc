@@ -165,6 +165,22 @@ std::string WhyNot(const FoundLight& f, int expected_views, double diagonal, con
   return "";
 }
 
+// No lamp makes highlights that are narrower than the lobe of the gloss, and that is what another lamp, if it is a
+// small one, makes: a cluster of smaller ones is paint. `lights`: by falling support.
+void LeaveOutNarrow(const std::vector<double>& widths_deg, std::vector<FoundLight>& lights) {
+  constexpr double kNarrow = 0.6, kTellingWidthDeg = 3;
+  const auto gloss = std::find_if(lights.begin(), lights.end(), [](const FoundLight& f) { return f.determined; });
+  if (gloss == lights.end() || gloss->angular_size_deg > 0) return;
+  const double lobe_deg = widths_deg[static_cast<size_t>(gloss - lights.begin())];
+  if (lobe_deg < kTellingWidthDeg) return;
+  for (size_t k = 0; k < lights.size(); ++k) {
+    if (!lights[k].determined || widths_deg[k] >= kNarrow * lobe_deg) continue;
+    lights[k].determined = false;
+    lights[k].why = fmt::format("its highlights are {:.1f} deg wide, narrower than gloss makes them ({:.1f} deg)",
+                                widths_deg[k], lobe_deg);
+  }
+}
+
 std::string MirrorLike(size_t num_views, size_t num_moving, size_t num_votes, const std::vector<FoundLight>& lights) {
   double explained = 0;
   for (const FoundLight& f : lights)
@@ -241,6 +257,7 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
                      ViewsThatShow(scene.views.size(), of_light(k))});
   const LightGroups groups = GroupViewsByLight(shows, OrderByNumbers(Names(scene)));
   told.groups = DescribeGroups(groups, Names(scene));
+  std::vector<double> widths_deg;
   for (size_t k = 0; k < fit.lights.size(); ++k) {
     FoundLight f = fit.lights[k];
     LimitToGroups(scene, groups, k, f.light, shows[k].expected);
@@ -254,7 +271,9 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
       f.why = WhyNot(f, expected, diagonal, options);
     f.determined = f.why.empty();
     told.lights.push_back(f);
+    widths_deg.push_back(MedianWidthDeg(scene, surface, of_light(k), f.light));
   }
+  LeaveOutNarrow(widths_deg, told.lights);
   std::stable_partition(told.lights.begin(), told.lights.end(), [](const FoundLight& f) { return f.determined; });
   told.outlier_share = fit.outlier_share;
   told.mirror_like = MirrorLike(scene.views.size(), told.not_paint, observations.size(), told.lights);

@@ -64,4 +64,16 @@ void MeasureSize(const Scene& scene, const SeedSurface& surface, const std::vect
   Widen(kCentroidShare * light.angular_size_deg * M_PI / 180, scene, center, light);
 }
 
+double MedianWidthDeg(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
+                      const Light& light) {
+  std::vector<double> widths_deg;
+  for (const Highlight& h : highlights) {
+    const View& view = scene.views[h.view];
+    const auto ray = view.RayThrough(h.px);
+    const auto at = ray ? surface.Meet(view.Center(), *ray) : std::nullopt;
+    if (at) widths_deg.push_back(MirrorTest(view, surface, light, h, *at).WidthDeg());
+  }
+  return Median(widths_deg);
+}
+
 }  // namespace glint

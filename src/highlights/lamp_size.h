@@ -16,4 +16,8 @@ namespace glint {
 void MeasureSize(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
                  const Eigen::Vector3d& center, FoundLight& light);
 
+// Median over its highlights of how wide the lobe is (mirror_test.h), degrees; 0: none of them lies on the seed.
+double MedianWidthDeg(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
+                      const Light& light);
+
 }  // namespace glint
