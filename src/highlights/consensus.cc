@@ -66,13 +66,14 @@ std::vector<Unlike> FindUnlike(const std::vector<SeenOnSeed>& seen, int num_ligh
       if (seen[i].light != light) continue;
       if (seen[i].off_deg > largest_deg)
         unlike[i] = Unlike::kNormal;
-      else
-        widths_deg.push_back(seen[i].width_deg);
+      else if (seen[i].width_deg)
+        widths_deg.push_back(*seen[i].width_deg);
     }
     const double width_deg = Median(widths_deg);
     if (widths_deg.size() < kFewest || width_deg < kTellingWidthDeg) continue;
     for (size_t i = 0; i < seen.size(); ++i)
-      if (seen[i].light == light && unlike[i] == Unlike::kNo && seen[i].width_deg < kNarrow * width_deg)
+      if (seen[i].light == light && unlike[i] == Unlike::kNo && seen[i].width_deg &&
+          *seen[i].width_deg < kNarrow * width_deg)
         unlike[i] = Unlike::kWidth;
   }
   return unlike;

@@ -1,14 +1,16 @@
 // What the highlights of lights have in common, seen on the seed.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 namespace glint {
 
 struct SeenOnSeed {
   int light = 0;
-  double off_deg = 0;    // half vector against the seed's normal where the ray meets it
-  double width_deg = 0;  // by how much the normal turns from the peak to half its height (mirror_test.h)
+  double off_deg = 0;  // half vector against the seed's normal where the ray meets it
+  // By how much the normal turns from the peak to half its height (mirror_test.h); nullopt: not known.
+  std::optional<double> width_deg;
 };
 
 enum class Unlike { kNo, kNormal, kWidth };
