@@ -62,7 +62,9 @@ cv::Mat DrawHighlights(const cv::Mat& image_bgr, const std::vector<Highlight>& h
   for (const bool accepted : {false, true})
     for (const Highlight& h : highlights) {
       if ((h.status == HighlightStatus::kAccepted) != accepted) continue;
-      const cv::Scalar color = accepted ? cv::Scalar(60, 255, 60) : cv::Scalar(40, 40, 255);
+      const cv::Scalar color = !accepted      ? cv::Scalar(40, 40, 255)
+                               : h.light >= 0 ? cv::Scalar(60, 255, 60)
+                                              : cv::Scalar(60, 200, 255);
       const cv::RotatedRect ellipse = Ellipse(h, 2, 3 * line);
       cv::ellipse(canvas, ellipse, color, line, cv::LINE_AA);
       const std::string label = accepted && h.light >= 0 ? std::to_string(h.light) : ReasonLetters(h.status);
