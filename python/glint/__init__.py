@@ -2,8 +2,9 @@
 
 Lengths are in world units (COLMAP's scale) unless a name says otherwise: `_rel` is a fraction of the bounding box's
 diagonal, `_px` pixels, `_deg` degrees, `_voxels` voxels. Distances are negative inside. Arrays may be anything that
-NumPy makes an array of; they are copied. Long calls free the interpreter, stop on Ctrl-C and take
-`progress=callable`.
+NumPy makes an array of; they are copied. Long calls free the interpreter. Those of many
+parts (run, find_lights, compare, signed_distance, closest_points) stop on Ctrl-C; those of one (mesh_to_level_set,
+level_set_to_mesh, detect_highlights, reading a file) end first. Some take `progress=callable`.
 """
 
 from __future__ import annotations
