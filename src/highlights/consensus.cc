@@ -12,7 +12,7 @@ constexpr size_t kFewest = 8;
 constexpr double kMinSigmaDeg = 1.5;
 constexpr double kLeastReachDeg = 10;
 constexpr double kMedianOfRayleigh = 1.18;  // in standard deviations
-constexpr double kClearlyOff = 3;           // in standard deviations: what is nearer is not told from the seed's errors
+constexpr double kClearlyOff = 5.5;         // in standard deviations: the errors of a rough seed have heavy tails
 constexpr double kNarrow = 0.4;             // of the median width
 constexpr double kTellingWidthDeg = 3;      // of sharper gloss the seed's facets decide how wide it looks
 constexpr int kRounds = 30;
@@ -24,8 +24,18 @@ double OfError(double angle, double sigma) {
   return angle / (sigma * sigma) * std::exp(-0.5 * angle * angle / (sigma * sigma));
 }
 
-// Angles above this are rather chance than error, degrees. Chance reaches as far as the angles do: what is farther off
-// has not come this far.
+// Logarithm of the likelihood of angles all of which are errors, of the most likely sigma.
+double LogLikelihoodOfErrors(const std::vector<double>& angles_deg) {
+  double squares = 0, sum = 0;
+  for (double deg : angles_deg) squares += Radians(deg) * Radians(deg);
+  const double sigma = std::sqrt(0.5 * squares / static_cast<double>(angles_deg.size()));
+  for (double deg : angles_deg) sum += std::log(std::max(OfError(Radians(deg), sigma), 1e-300));
+  return sum;
+}
+
+// Angles above this are rather chance than error, degrees; 90 where errors alone explain them as well (Bayesian
+// information criterion: the few highlights of a poor seed are off by much, and none by chance). Chance reaches as far
+// as the angles do: what is farther off has not come this far.
 double LargestErrorDeg(std::vector<double> angles_deg) {
   std::sort(angles_deg.begin(), angles_deg.end());
   const double farthest = Radians(std::clamp(angles_deg.back(), kLeastReachDeg, 90.0));
@@ -47,6 +57,11 @@ double LargestErrorDeg(std::vector<double> angles_deg) {
     sigma = std::max(std::sqrt(0.5 * squares / std::max(sum, 1e-12)), Radians(kMinSigmaDeg));
     share = std::clamp(sum / static_cast<double>(angles_deg.size()), 0.05, 0.95);
   }
+  double log_likelihood = 0;
+  for (double deg : angles_deg)
+    log_likelihood += std::log(share * OfError(Radians(deg), sigma) + (1 - share) * of_chance(Radians(deg)));
+  const double gain = log_likelihood - LogLikelihoodOfErrors(angles_deg);
+  if (2 * gain < std::log(static_cast<double>(angles_deg.size()))) return 90;
   double limit = kClearlyOff * sigma;
   while (limit < M_PI / 2 && is_error(limit) > 0.5) limit += Radians(0.1);
   return limit * 180 / M_PI;
