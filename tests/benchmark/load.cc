@@ -2,7 +2,8 @@
 // peak of the memory since the line before.
 //   load images --images 1000 --size 4000x3000 --folder DIR   photographs streamed through detection and the gate's
 //   maps load model --points 5000000 --highlights 20000 --folder DIR   a model read, and its highlights refined load
-//   soak --project PROJECT --lights FILE --runs 20 --folder DIR   whole runs, one after the other
+//   soak --project PROJECT --lights FILE --runs 20 --folder DIR   whole runs, one after the other load project --images
+//   1000 --points 20000 --folder DIR   makes a project for the program (scripts/load)
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -19,7 +20,9 @@
 
 #include "colmap/model.h"
 #include "highlights/view_brightness.h"
+#include "io/mesh_io.h"
 #include "io/project_images.h"
+#include "light/light_io.h"
 #include "pipeline/config.h"
 #include "pipeline/image_stages.h"
 #include "pipeline/run.h"
@@ -198,6 +201,18 @@ void LoadModel(const fs::path& folder, size_t num_points, size_t num_highlights)
   }
 }
 
+// A project of photographs of 12 megapixels, a few files under many names, with its mesh and lights.
+void MakeProject(const fs::path& folder, size_t num_images, size_t num_points) {
+  constexpr size_t kLights = 20;  // that MakeEllipsoidModel has
+  const EllipsoidModel made = MakeEllipsoidModel(num_points, kLights * num_images);
+  WriteModel(made.model, folder / "sparse/0");
+  MakePhotographs(folder, made.model.images.size(), 4000, 3000);
+  TriangleMesh mesh = testing::Icosphere(4);
+  for (Eigen::Vector3d& v : mesh.vertices) v = testing::Ellipsoid().PointWithNormal(v);
+  WriteMesh(folder / "mesh.ply", mesh);
+  WriteLights(folder / "lights.json", {made.lights.front()});
+}
+
 void Soak(const RunArguments& given, int num_runs) {
   Config config;
   config.refine.voxel_rel = 0.02;
@@ -215,7 +230,7 @@ void Soak(const RunArguments& given, int num_runs) {
 }  // namespace glint
 
 int main(int argc, char** argv) {
-  CLI::App app("Load: images, model, soak");
+  CLI::App app("Load: images, model, project, soak");
   app.require_subcommand(1);
   std::string folder, size = "4000x3000";
   size_t num_images = 1000, num_points = 5'000'000, num_highlights = 20'000;
@@ -232,6 +247,9 @@ int main(int argc, char** argv) {
   CLI::App* model = add("model", "Points and highlights");
   model->add_option("--points", num_points);
   model->add_option("--highlights", num_highlights);
+  CLI::App* project = add("project", "A project for the program");
+  project->add_option("--images", num_images);
+  project->add_option("--points", num_points);
   CLI::App* soak = add("soak", "Many runs in one process");
   soak->add_option("--project", run.project)->required();
   soak->add_option("--mesh", run.mesh);
@@ -244,6 +262,7 @@ int main(int argc, char** argv) {
     const size_t x = size.find('x');
     glint::LoadImages(folder, num_images, std::stoi(size.substr(0, x)), std::stoi(size.substr(x + 1)));
   }
+  if (*project) glint::MakeProject(folder, num_images, num_points);
   if (*model) glint::LoadModel(folder, num_points, num_highlights);
   if (*soak) {
     run.out = folder;
