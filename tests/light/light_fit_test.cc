@@ -105,6 +105,20 @@ TEST(FitLights, ANearLightIsToldFromADistantOne) {
   EXPECT_EQ(distant.lights[0].light.type, LightType::kDistant);
 }
 
+TEST(FitLights, AVeryNearLightIsNotTwoDistantOnes) {
+  Simulated left, right;
+  left.center = {-1.5, 0, 0}, right.center = {1.5, 0, 0};
+  const Light lamp{LightType::kPoint, LightFrame::kWorld, {0, 0.4, 2.8}, 0};
+  std::vector<LightObservation> observations;
+  left.Add(observations, lamp, 2);
+  right.Add(observations, lamp, 2);
+  const LightFit fit = FitLights(observations, Eigen::Vector3d::Zero(), 6, {});
+  ASSERT_EQ(fit.lights.size(), 1u);
+  EXPECT_EQ(fit.lights[0].light.type, LightType::kPoint);
+  EXPECT_LT((fit.lights[0].light.vector - lamp.vector).norm(), 0.3);
+  EXPECT_GT(fit.lights[0].support, 0.9 * static_cast<double>(observations.size()));
+}
+
 TEST(FitLights, AFlashAndALightThatTurnsWithTheCamera) {
   Simulated scene;
   std::vector<LightObservation> flash, turning;
