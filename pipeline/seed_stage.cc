@@ -59,6 +59,7 @@ SeedStageResult FromPoints(const Scene& scene, const ImageSource& images, const 
   result.mesh = std::move(seed.mesh);
   result.start = std::move(seed.smooth);
   result.point_used = std::move(seed.point_used);
+  result.outline = std::move(seed.outline);
   result.points = ColoredPoints(scene, seed.fate);
   if (const std::string note = ChoiceNote(scene, seed.fate); !note.empty()) result.notes.push_back(note);
   result.report = summary.BriefReport();

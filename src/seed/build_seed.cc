@@ -6,94 +6,16 @@
 #include <cmath>
 
 #include "geometry/closest_point.h"
-#include "geometry/components.h"
-#include "geometry/self_intersections.h"
-#include "sdf/extract_mesh.h"
-#include "sdf/mesh_to_level_set.h"
-#include "seed/sparse_surface.h"
+#include "seed/rim_points.h"
+#include "seed/shape.h"
 #include "seed/subdivide.h"
 
 namespace glint {
 namespace {
 
 constexpr double kRegionMargin = 0.05;  // of the diagonal
-constexpr int kRounds = 3;              // of surface, fairing, and leaving out the points that it disbelieves
-constexpr int kMaxStiffenings = 4;
-constexpr double kMendVoxels = 0.7;     // edges of the smooth seed: about as fine as it is
-constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
-constexpr int kSubdivisions = 2;         // of the smooth surface: its facets must not show at the finest voxels
-constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
-
-// Sum over the pieces; the mesh is closed and manifold.
-long GenusOf(const TriangleMesh& mesh) {
-  const long euler = static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.faces.size()) / 2;
-  return 1 - euler / 2;
-}
-
-// What the smooth surface should pass: the object's points on the sparse surface, and its foot on the ground. Many
-// views that agree are hardly wrong; two views agree on any mismatch along their epipolar line.
-std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& surface,
-                                    const PointReliability& reliability) {
-  const double foot_sigma = kFootSigmaRel * Diagonal(surface.mesh);
-  std::vector<Attachment> attachments;
-  for (size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
-    if (surface.scene_point[v] == kMiddleVertex) continue;
-    Attachment a{surface.mesh.vertices[v], foot_sigma, 1, surface.scene_point[v]};
-    if (const int point = surface.scene_point[v]; point >= 0) {
-      const double views = static_cast<double>(scene.points[point].observations.size());
-      a.sigma = reliability.sigma[point];
-      a.credit = std::clamp((views - 1) / 2, 0.5, 3.0);
-    }
-    attachments.push_back(a);
-  }
-  return attachments;
-}
-
-TriangleMesh LargestPiece(const TriangleMesh& mesh) {
-  const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));
-  size_t largest = 0;
-  for (size_t k = 1; k < pieces.list.size(); ++k)
-    if (pieces.list[k].volume > pieces.list[largest].volume) largest = k;
-  TriangleMesh out = mesh;
-  out.faces.clear();
-  for (size_t f = 0; f < mesh.faces.size(); ++f)
-    if (pieces.of_face[f] == largest) out.faces.push_back(mesh.faces[f]);
-  return WithoutUnusedVertices(out);
-}
-
-// Fairs ever more stiffly until the surface does not pass through itself; if it always does, takes it by its inside.
-FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                            const FairContext& context, FairOptions options, SeedSummary& summary) {
-  FairResult result;
-  for (int attempt = 0; attempt < kMaxStiffenings; ++attempt) {
-    result = FairThroughPoints(mesh, attachments, context, options);
-    if (SelfIntersections(result.mesh, 1).empty()) return result;
-    options.smoothing *= 1.6;
-  }
-  // Its inside, by winding number, has a surface that does not.
-  const double voxel = kMendVoxels * options.edge_rel * Diagonal(result.mesh);
-  TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(result.mesh, voxel, {.sign = "winding"})));
-  if (mended.empty() || !SelfIntersections(mended, 1).empty()) {
-    summary.warnings.push_back("the smooth seed passes through itself");
-    return result;
-  }
-  result.mesh = std::move(mended);
-  return result;
-}
-
-// Takes the points that the smooth surface disbelieves out of the object; true if there were any.
-bool DropDoubted(const std::vector<Attachment>& attachments, const FairResult& fair, PointReliability& reliability,
-                 ObjectChoice& choice) {
-  bool any = false;
-  for (size_t i = 0; i < attachments.size(); ++i) {
-    const int point = attachments[i].point;
-    if (point < 0 || fair.trust[i] > kMinTrust || choice.role[point] != PointRole::kObject) continue;
-    reliability.status[point] = PointStatus::kVirtual;
-    choice.role[point] = PointRole::kUnused;
-    any = true;
-  }
-  return any;
-}
+constexpr int kOutlinePasses = 2;       // found outlines are better where the shape already is
+constexpr int kSubdivisions = 2;        // of the smooth surface: its facets must not show at the finest voxels
 
 double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
   const ClosestPointQuery query(mesh);
@@ -128,12 +50,60 @@ void CountPoints(const PointReliability& reliability, const ObjectChoice& choice
   summary.object_chosen_by = choice.chosen_by;
 }
 
+// 1 for the object's points, -1 for what is known to be another's, 0 for the rest.
+std::vector<int8_t> Sides(const ObjectChoice& choice) {
+  std::vector<int8_t> side;
+  for (const PointRole role : choice.role)
+    side.push_back(role == PointRole::kObject ? 1 : role == PointRole::kUnused ? 0 : -1);
+  return side;
+}
+
+// What has been made of the points so far.
+struct Made {
+  Shape shape;
+  PointReliability reliability;
+  ObjectChoice choice;
+};
+
+// Outlines around the shape that stands so far, and the shape of points and outlines, which takes its place if it fits
+// them better. False if there is nothing more to gain.
+bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOptions& options, const ImageSource& images,
+                    Made& made, SeedSummary& s, std::vector<OutlineSample>& outline, Progress& progress) {
+  const ObjectChoice& choice = made.choice;
+  const auto ground = choice.ground ? std::optional(choice.ground->plane) : std::nullopt;
+  SilhouetteSummary found;
+  std::vector<OutlineSample> next =
+      FindSilhouettes(scene, images, {made.shape.smooth, Sides(choice), ground}, options.outlines, &found, progress)
+          .outline();
+  const bool first = s.outlines.source.empty();
+  if (first || !next.empty()) s.outlines = found;
+  if (next.empty()) return false;
+  outline = std::move(next);
+  std::vector<Eigen::Vector3d> points;
+  for (size_t i = 0; i < choice.role.size(); ++i)
+    if (choice.role[i] == PointRole::kObject) points.push_back(scene.points[i].position);
+  const RimEvidence rim = RimFromOutline(scene, outline, points, Diagonal(made.shape.smooth), found.source == "masks");
+  Made with{{}, points_alone.reliability, points_alone.choice};
+  with.shape = MakeShape(scene, with.reliability, with.choice, rim, options.surface, options.smooth, progress);
+  s.outline_fit_before = OutlineFit(scene, outline, points_alone.shape.smooth);
+  s.outline_fit = OutlineFit(scene, outline, made.shape.smooth);
+  if (with.shape.sparse.mesh.empty() || (with.shape.folded && !made.shape.folded)) return false;
+  const double fit = OutlineFit(scene, outline, with.shape.smooth);
+  if (fit <= s.outline_fit) return false;
+  s.outline_fit = fit;
+  s.outlines_used = true;
+  s.num_rim_points = rim.points.size();
+  made = std::move(with);
+  return found.source == "photographs";  // masks do not change
+}
+
 }  // namespace
 
 void SeedOptions::Visit(OptionVisitor& v) {
   VisitSection(v, "points", "Which sparse points are believed", points);
   VisitSection(v, "object", "Which part of the scene is the object", object);
   VisitSection(v, "surface", "The visibility-consistent surface of the points", surface);
+  VisitSection(v, "outlines", "The object's outlines, where points are missing", outlines);
   VisitSection(v, "smooth", "The smooth surface that refinement starts on", smooth);
 }
 
@@ -141,12 +111,18 @@ std::string SeedSummary::BriefReport() const {
   std::string text =
       fmt::format("seed from {} of {} points (object by {}; {} unreliable, {} virtual left out), genus {}",
                   num_object_points, num_points, object_chosen_by, num_unreliable, num_virtual, genus);
+  if (!outlines.source.empty()) text += "; " + outlines.BriefReport();
+  if (outlines.num_trusted_samples > 0)
+    text += fmt::format(
+        ", {:.0f} % fit the surface of the points alone{}", 100 * outline_fit_before,
+        outlines_used ? fmt::format(", {:.0f} % the seed, with {} points on the rim", 100 * outline_fit, num_rim_points)
+                      : ", which is kept");
   for (const std::string& warning : warnings) text += "; " + warning;
   return text;
 }
 
 SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary* summary, Progress& progress,
-                     const ImageSource* masks) {
+                     const ImageSource* images) {
   SeedSummary unused;
   SeedSummary& s = summary ? *summary : unused;
   s = SeedSummary();
@@ -154,7 +130,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   progress.Begin("seed", 4);
   PointReliability reliability = JudgePoints(scene, options.points);
   progress.Advance();
-  ObjectChoice choice = ChooseObject(scene, reliability, options.object, options.surface, masks, progress);
+  ObjectChoice choice = ChooseObject(scene, reliability, options.object, options.surface, images, progress);
   CountPoints(reliability, choice, s);
   out.point_used.assign(scene.points.size(), 0);
   progress.Advance();
@@ -164,29 +140,26 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     s.warnings.push_back(fmt::format("only {} sparse points on the object: no seed", s.num_object_points));
     return out;
   }
-  FairContext context;
-  for (const View& view : scene.views) context.eyes.push_back(view.Center());
-  if (choice.ground) context.ground = choice.ground->plane;
-  SparseSurface surface;
-  FairResult fair;
-  for (int round = 0; round < kRounds; ++round) {
-    surface = MakeSparseSurface(scene, reliability, choice, options.surface);
-    progress.ThrowIfCancelled();
-    if (surface.mesh.empty()) break;
-    const std::vector<Attachment> attachments = Attachments(scene, surface, reliability);
-    fair = FairWithoutFolds(surface.mesh, attachments, context, options.smooth, s);
-    if (round + 1 == kRounds || !DropDoubted(attachments, fair, reliability, choice)) break;
-  }
+  Made made{{}, reliability, choice};
+  Made alone = made;  // before points are taken out of it
+  made.shape = MakeShape(scene, made.reliability, made.choice, {}, options.surface, options.smooth, progress);
+  alone.shape = made.shape;
+  for (int pass = 0; pass < kOutlinePasses && images && !made.shape.sparse.mesh.empty(); ++pass)
+    if (!FollowOutlines(scene, alone, options, *images, made, s, out.outline, progress)) break;
+  const Shape& shape = made.shape;
+  reliability = std::move(made.reliability);
+  choice = std::move(made.choice);
+  if (shape.folded) s.warnings.push_back("the smooth seed passes through itself");
   CountPoints(reliability, choice, s);
   progress.Advance();
   progress.ThrowIfCancelled();
-  if (surface.mesh.empty()) {
+  if (shape.sparse.mesh.empty()) {
     s.warnings.push_back("the sparse points enclose no volume: no seed");
     return out;
   }
-  out.mesh = surface.mesh;
-  out.smooth = SubdivideSmoothly(fair.mesh, kSubdivisions);
-  for (int point : surface.scene_point)
+  out.mesh = shape.sparse.mesh;
+  out.smooth = SubdivideSmoothly(shape.smooth, kSubdivisions);
+  for (int point : shape.sparse.scene_point)
     if (point >= 0) out.point_used[point] = 1;
   out.fate = Fates(reliability, choice, out.point_used);
   out.region = BoundingBox(out.mesh).merged(BoundingBox(out.smooth));

@@ -16,6 +16,8 @@
 #include "seed/object_choice.h"
 #include "seed/reliable_points.h"
 #include "seed/visibility_cut.h"
+#include "silhouette/outline.h"
+#include "silhouette/silhouettes.h"
 
 namespace glint {
 
@@ -23,6 +25,7 @@ struct SeedOptions {
   ReliabilityOptions points;
   ObjectOptions object;
   CutOptions surface;
+  SilhouetteOptions outlines;
   FairOptions smooth;
 
   void Visit(OptionVisitor& v);
@@ -39,11 +42,12 @@ enum class PointFate : uint8_t {
 };
 
 struct SeedResult {
-  TriangleMesh mesh;                // the sparse surface as it is: closed, oriented outward, one piece
-  TriangleMesh smooth;              // the same, faired through the points: what the level set starts on
-  std::vector<uint8_t> point_used;  // per scene point: 1 for a reliable point of the object's surface
-  std::vector<PointFate> fate;      // per scene point
-  Eigen::AlignedBox3d region;       // around the object (world), with a margin of 5 % of its diagonal
+  TriangleMesh mesh;                   // the sparse surface as it is: closed, oriented outward, one piece
+  TriangleMesh smooth;                 // the same, faired through the points: what the level set starts on
+  std::vector<uint8_t> point_used;     // per scene point: 1 for a reliable point of the object's surface
+  std::vector<PointFate> fate;         // per scene point
+  std::vector<OutlineSample> outline;  // of the object, as far as the views confirm each other
+  Eigen::AlignedBox3d region;          // around the object (world), with a margin of 5 % of its diagonal
 };
 
 struct SeedSummary {
@@ -55,15 +59,20 @@ struct SeedSummary {
   std::string object_chosen_by;    // "box", "masks", "ground and focus", "focus"
   long genus = 0;                  // of `smooth`
   double smooth_residual_rel = 0;  // median distance of the object's points from `smooth`, fraction of its diagonal
+  SilhouetteSummary outlines;
+  bool outlines_used = false;     // the seed follows them
+  double outline_fit_before = 0;  // share of the outlines that the surface of the points alone agrees with
+  double outline_fit = 0;         // and the one with the rim's points
+  size_t num_rim_points = 0;
   std::vector<std::string> warnings;
 
   std::string BriefReport() const;
 };
 
-// `masks` (optional): 0 where the object is not. With fewer than four points on the object, or none that enclose a
-// volume, the meshes are empty and the summary's warnings say why. Scale, place and rotation of the world do not
-// matter.
+// `images` (optional): masks that say which points are the object's; outlines from masks or photographs. With fewer
+// than four points on the object, or none that enclose a volume, the meshes are empty and the summary's warnings say
+// why. Scale, place and rotation of the world do not matter.
 SeedResult BuildSeed(const Scene& scene, const SeedOptions& options = {}, SeedSummary* summary = nullptr,
-                     Progress& progress = Progress::Silent(), const ImageSource* masks = nullptr);
+                     Progress& progress = Progress::Silent(), const ImageSource* images = nullptr);
 
 }  // namespace glint

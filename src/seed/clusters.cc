@@ -6,7 +6,7 @@
 
 #include "core/median.h"
 #include "core/parallel.h"
-#include "seed/point_index.h"
+#include "geometry/point_index.h"
 
 namespace glint {
 namespace {

@@ -25,8 +25,9 @@ constexpr double kInertia = 2e-6;        // of the pull of points: keeps the sys
 constexpr double kUnseenCosine = -0.25;  // of the normal with the ways to all cameras
 constexpr double kRestLength = 1;        // spacings over which the natural curvature is even
 constexpr double kMinBelief = 1e-3;      // in a curvature where nothing is known
-constexpr double kStiffStart = 2.5;      // times the smoothing asked for
-constexpr double kTrustedRange = 4;      // usual distances: farther attachments lose most of their weight
+constexpr double kFlatness = 0.1;  // belief in a flat surface, where outlines are known: what they leave open is a lid
+constexpr double kStiffStart = 2.5;  // times the smoothing asked for
+constexpr double kTrustedRange = 4;  // usual distances: farther attachments lose most of their weight
 
 // Cotangent weights, within what nearly equilateral triangles have: a sliver must neither turn them negative nor
 // dominate.
@@ -49,6 +50,13 @@ Laplacian EvenLaplacian(const TriangleMesh& mesh) {
     }
   out.stiffness.setFromTriplets(entries.begin(), entries.end());
   return out;
+}
+
+std::vector<Attachment> Leading(const std::vector<Attachment>& attachments) {
+  std::vector<Attachment> out;
+  for (const Attachment& a : attachments)
+    if (!a.extra) out.push_back(a);
+  return out.empty() ? attachments : out;
 }
 
 // Attachments in clusters count once: the number of voxels they occupy at a size where that still changes.
@@ -91,8 +99,9 @@ std::vector<Foot> FeetOf(const std::vector<Attachment>& attachments, const Trian
 // The share of its weight that each keeps (Geman–McClure against the usual distance).
 std::vector<double> Trust(const std::vector<Attachment>& attachments, const std::vector<Foot>& feet, double min_sigma) {
   std::vector<double> distances;
-  for (const Foot& f : feet) distances.push_back(f.distance);
-  const double typical = std::max(1.4826 * Median(distances), min_sigma);
+  for (size_t i = 0; i < feet.size(); ++i)
+    if (!attachments[i].extra) distances.push_back(feet[i].distance);
+  const double typical = distances.empty() ? min_sigma : std::max(1.4826 * Median(distances), min_sigma);
   std::vector<double> trust;
   for (size_t i = 0; i < feet.size(); ++i) {
     const double range = kTrustedRange * attachments[i].credit * std::max(typical, attachments[i].sigma);
@@ -124,7 +133,7 @@ Eigen::VectorXd Knowledge(const std::vector<Foot>& feet, const std::vector<doubl
 // where it is known and continued from there where it is not. A plate that is bent by nature keeps the bend of its
 // surroundings where no point holds it; a flat one would flatten.
 Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const Laplacian& laplacian, double length,
-                               const Eigen::VectorXd& known) {
+                               const Eigen::VectorXd& known, double flatness) {
   const int n = static_cast<int>(mesh.vertices.size());
   Eigen::MatrixX3d x(n, 3);
   for (int v = 0; v < n; ++v) x.row(v) = mesh.vertices[v];
@@ -135,7 +144,7 @@ Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const Laplacian& laplac
   for (int v = 0; v < n; ++v) {
     const double belief = std::max(known[v] * known[v], kMinBelief);
     curvature[v] = belief * bend.row(v).dot(normals[v]);
-    diffusion.coeffRef(v, v) += belief;
+    diffusion.coeffRef(v, v) += belief + flatness;
   }
   const Eigen::VectorXd smooth = Eigen::SimplicialLDLT<Sparse>(diffusion).solve(curvature);
   Eigen::MatrixX3d rest(n, 3);
@@ -219,19 +228,26 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
   const ClosestPointQuery raw(mesh);
   FairResult out{RemeshEvenly(mesh, options.edge_rel * diagonal), std::vector<double>(attachments.size(), 1.0)};
   if (attachments.empty()) return out;
+  const std::vector<Attachment> leading = Leading(attachments);
   const double min_sigma = kMinSigmaRel * diagonal;
   for (int round = 0; round < options.rounds; ++round) {
     const double area = SurfaceArea(out.mesh);
-    const double density = EffectiveCount(attachments, area) / area;
     const Laplacian laplacian = EvenLaplacian(out.mesh);
     const std::vector<Foot> feet = FeetOf(attachments, out.mesh);
     // The first distances are those to flat facets: large also for good points.
     if (round > 0) out.trust = Trust(attachments, feet, min_sigma);
-    std::vector<double> weights;
-    for (size_t i = 0; i < attachments.size(); ++i)
+    std::vector<double> weights, leading_weights;
+    for (size_t i = 0; i < attachments.size(); ++i) {
       weights.push_back(out.trust[i] / std::pow(std::max(attachments[i].sigma, min_sigma), 2));
+      if (!attachments[i].extra || leading.size() == attachments.size()) leading_weights.push_back(weights.back());
+    }
     // A thin plate on springs of density ρw bends over ℓ = (λ/ρw)^¼; ℓ = smoothing · ρ^−½.
-    const double spring = Median(weights);
+    const double spring = Median(leading_weights);
+    // Those that are less sure than sparse points count for less of one.
+    const double share = std::min(1.0, Median(weights) / spring);
+    const double count = EffectiveCount(leading, area);
+    const double all = EffectiveCount(attachments, area);
+    const double density = (count + share * (all - count)) / area;
     const double lambda = std::pow(SmoothingOf(options, round), 4) * spring / density;
     const int n = static_cast<int>(out.mesh.vertices.size());
     Springs springs(n);
@@ -241,10 +257,11 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     system.setFromTriplets(springs.entries.begin(), springs.entries.end());
     system += ThinPlate(laplacian, lambda);
     if (round > 0) {
-      const double length = kRestLength / std::sqrt(density);
-      const Eigen::VectorXd known = Knowledge(feet, out.trust, laplacian, length, density);
+      const double flatness = leading.size() < attachments.size() ? kFlatness : 0;
+      const double length = kRestLength / std::sqrt(all / area);
+      const Eigen::VectorXd known = Knowledge(feet, out.trust, laplacian, length, all / area);
       springs.right +=
-          lambda / laplacian.area * (laplacian.stiffness * RestCurvature(out.mesh, laplacian, length, known));
+          lambda / laplacian.area * (laplacian.stiffness * RestCurvature(out.mesh, laplacian, length, known, flatness));
     }
     const Eigen::SimplicialLDLT<Sparse> solver(system);
     if (solver.info() != Eigen::Success) return out;  // singular: what stands so far is closed and sound

@@ -26,7 +26,8 @@ struct Attachment {
   Eigen::Vector3d position;
   double sigma;
   double credit = 1;
-  int point = -1;  // the caller's name for it
+  int point = -1;      // the caller's name for it
+  bool extra = false;  // no sparse point: how far the surface may bend is not for it to say
 };
 
 // What is known besides the points.

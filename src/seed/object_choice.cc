@@ -7,8 +7,8 @@
 
 #include "core/check.h"
 #include "core/error.h"
+#include "geometry/point_index.h"
 #include "seed/clusters.h"
-#include "seed/point_index.h"
 #include "seed/sparse_cells.h"
 
 namespace glint {

@@ -196,10 +196,19 @@ void CastFreeLines(const Tetrahedra& tetrahedra, const std::vector<FreeLine>& li
   });
 }
 
+void CastMatter(const Tetrahedra& tetrahedra, const std::vector<MatterBehind>& matter, RayVotes& votes) {
+  ParallelFor(matter.size(), kGrain, [&](size_t i) {
+    const int point = tetrahedra.vertex_of_point[matter[i].point];
+    const int cell = FollowFromPoint(tetrahedra, tetrahedra.CellsAround(point), point, matter[i].direction,
+                                     matter[i].depth, [](int, int, double) {});
+    if (cell != kLost) Add(votes.inside[cell], kVote);
+  });
+}
+
 }  // namespace
 
 RayVotes CastVotes(const Tetrahedra& tetrahedra, const std::vector<SightLine>& lines, const std::vector<double>& sigma,
-                   const std::vector<FreeLine>& free_lines) {
+                   const std::vector<FreeLine>& free_lines, const std::vector<MatterBehind>& matter) {
   GLINT_CHECK_EQ(sigma.size(), tetrahedra.points.size());
   const size_t num_cells = tetrahedra.cells.size();
   RayVotes votes;
@@ -210,6 +219,7 @@ RayVotes CastVotes(const Tetrahedra& tetrahedra, const std::vector<SightLine>& l
   if (num_cells == 0) return votes;
   CastSightLines(tetrahedra, lines, sigma, votes);
   CastFreeLines(tetrahedra, free_lines, votes);
+  CastMatter(tetrahedra, matter, votes);
   return votes;
 }
 

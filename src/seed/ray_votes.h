@@ -22,6 +22,13 @@ struct FreeLine {
   Eigen::Vector3d eye;
 };
 
+// Known matter: `depth` (world units) from the point along `direction` (unit).
+struct MatterBehind {
+  int point;
+  Eigen::Vector3d direction;
+  double depth;
+};
+
 // Votes are integers (kVote for one line) so that their sums do not depend on the order of adding.
 inline constexpr int64_t kVote = 1024;
 
@@ -36,6 +43,6 @@ struct RayVotes {
 // softly within `sigma` of the point (1 − exp(−t²/2σ²)), to `outside` of the camera's cell, and to `inside` of the cell
 // 3 sigma behind the point. `sigma` per point, world units. Free lines have no `inside` and no softness.
 RayVotes CastVotes(const Tetrahedra& tetrahedra, const std::vector<SightLine>& lines, const std::vector<double>& sigma,
-                   const std::vector<FreeLine>& free_lines);
+                   const std::vector<FreeLine>& free_lines, const std::vector<MatterBehind>& matter = {});
 
 }  // namespace glint

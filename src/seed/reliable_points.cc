@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "seed/point_index.h"
+#include "geometry/point_index.h"
 
 namespace glint {
 namespace {

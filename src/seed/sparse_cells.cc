@@ -3,7 +3,8 @@
 namespace glint {
 
 SparseCells BuildSparseCells(const Scene& scene, const std::vector<SparseVertex>& vertices,
-                             const std::vector<int>& context) {
+                             const std::vector<int>& context, std::vector<FreeLine> free_lines,
+                             const std::vector<MatterBehind>& matter) {
   std::vector<Eigen::Vector3d> centers, positions;
   for (const View& view : scene.views) centers.push_back(view.Center());
   std::vector<SightLine> lines;
@@ -17,12 +18,11 @@ SparseCells BuildSparseCells(const Scene& scene, const std::vector<SparseVertex>
     for (const Observation& o : scene.points[vertices[i].scene_point].observations)
       lines.push_back({static_cast<int>(i), centers[o.view]});
   }
-  std::vector<FreeLine> free_lines;
   for (int point : context)
     for (const Observation& o : scene.points[point].observations)
       free_lines.push_back({scene.points[point].position, centers[o.view]});
   out.tetrahedra = DelaunayTetrahedra(positions);
-  out.votes = CastVotes(out.tetrahedra, lines, sigma, free_lines);
+  out.votes = CastVotes(out.tetrahedra, lines, sigma, free_lines, matter);
   return out;
 }
 

@@ -16,15 +16,17 @@ struct SparseCells {
   std::vector<int> scene_point;  // per point of the triangulation; −1: extra
 };
 
-// A point of the triangulation; extra ones (scene_point −1) have no lines of sight.
+// A point of the triangulation; extra ones have no lines of sight.
 struct SparseVertex {
   Eigen::Vector3d position;
-  int scene_point = -1;
-  double sigma = 0;  // world units
+  int scene_point = -1;  // negative: extra
+  double sigma = 0;      // world units
 };
 
-// `context`: scene points that are no vertices, but whose lines of sight tell what is free.
+// `context`: scene points that are no vertices, but whose lines of sight tell what is free. `free_lines`, `matter`:
+// what is known besides.
 SparseCells BuildSparseCells(const Scene& scene, const std::vector<SparseVertex>& vertices,
-                             const std::vector<int>& context = {});
+                             const std::vector<int>& context = {}, std::vector<FreeLine> free_lines = {},
+                             const std::vector<MatterBehind>& matter = {});
 
 }  // namespace glint

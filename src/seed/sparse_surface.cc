@@ -62,14 +62,15 @@ class Foot {
   std::vector<Eigen::Vector2d> outline_;  // convex, counter-clockwise; empty: the object shows no foot
 };
 
-// Matter lies above the ground, and has at least one corner that is a point of the object.
+// Matter lies above the ground, and has at least one corner that is a point of the object or on its rim.
 std::vector<uint8_t> Permitted(const SparseCells& cells, const ObjectChoice& choice) {
   const Tetrahedra& t = cells.tetrahedra;
   std::vector<uint8_t> permitted(t.cells.size(), 0);
   for (int c = 0; c < static_cast<int>(t.cells.size()); ++c) {
     if (t.IsInfinite(c)) continue;
-    const bool object =
-        std::any_of(t.cells[c].begin(), t.cells[c].end(), [&](int v) { return cells.scene_point[v] >= 0; });
+    const bool object = std::any_of(t.cells[c].begin(), t.cells[c].end(), [&](int v) {
+      return cells.scene_point[v] >= 0 || cells.scene_point[v] <= kFirstRimVertex;
+    });
     permitted[c] = object && (!choice.ground || choice.ground->plane.signedDistance(t.Centroid(c)) > 0);
   }
   return permitted;
@@ -101,7 +102,7 @@ void FillCavities(const Tetrahedra& t, std::vector<uint8_t>& labels) {
 }  // namespace
 
 SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reliability, const ObjectChoice& choice,
-                                const CutOptions& options) {
+                                const CutOptions& options, const RimEvidence& rim) {
   SparseSurface out;
   std::vector<SparseVertex> vertices;
   std::vector<int> context;
@@ -113,7 +114,12 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
       context.push_back(static_cast<int>(i));
   }
   for (const Eigen::Vector3d& x : Foot(scene, choice).Points()) vertices.push_back({x, kFootVertex, 0});
-  const SparseCells cells = BuildSparseCells(scene, vertices, context);
+  std::vector<MatterBehind> matter;
+  for (size_t i = 0; i < rim.points.size(); ++i) {
+    matter.push_back({static_cast<int>(vertices.size()), -rim.points[i].normal, rim.depth});
+    vertices.push_back({rim.points[i].position, kFirstRimVertex - static_cast<int>(i), rim.points[i].sigma});
+  }
+  const SparseCells cells = BuildSparseCells(scene, vertices, context, rim.free_lines, matter);
   const Tetrahedra& t = cells.tetrahedra;
   if (t.cells.empty()) return out;
   std::vector<uint8_t> labels = CutCells(t, cells.votes, Permitted(cells, choice), options);

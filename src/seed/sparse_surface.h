@@ -5,22 +5,25 @@
 #include "geometry/triangle_mesh.h"
 #include "seed/object_choice.h"
 #include "seed/reliable_points.h"
+#include "seed/rim_points.h"
 #include "seed/visibility_cut.h"
 
 namespace glint {
 
 // What a vertex of the sparse surface is, where it is no point of the scene.
-inline constexpr int kFootVertex = -1;    // on the ground below the object
-inline constexpr int kMiddleVertex = -2;  // in the middle of an edge, where sheets were separated
+inline constexpr int kFootVertex = -1;      // on the ground below the object
+inline constexpr int kMiddleVertex = -2;    // in the middle of an edge, where sheets were separated
+inline constexpr int kFirstRimVertex = -3;  // that of rim point i: kFirstRimVertex - i
 
 struct SparseSurface {
-  TriangleMesh mesh;             // closed, oriented outward, one piece; empty if the points enclose nothing
-  std::vector<int> scene_point;  // per vertex: index into the scene's points, kFootVertex or kMiddleVertex
+  TriangleMesh mesh;  // closed, oriented outward, one piece; empty if the points enclose nothing
+  std::vector<int>
+      scene_point;  // per vertex: index into the scene's points, kFootVertex, kMiddleVertex, or a rim point's
 };
 
-// Matter touches only the object's points and the ground. Where the ground is hidden below the object, points are put
-// on it, so that an object without texture at its foot still stands on the plane.
+// Matter touches only the object's points, its rim and the ground. Where the ground is hidden below the object, points
+// are put on it, so that an object without texture at its foot still stands on the plane.
 SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reliability, const ObjectChoice& choice,
-                                const CutOptions& options);
+                                const CutOptions& options, const RimEvidence& rim = {});
 
 }  // namespace glint

@@ -1,21 +1,23 @@
 #include "silhouette/agreement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 
 namespace glint::internal {
 namespace {
 
 constexpr int kSteps = 40;  // through the ball
 constexpr int kFinerSteps = 8;
+constexpr int kMaxContradictions = 8;
 
 }  // namespace
 
-std::optional<double> OutsideBy(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x,
-                                int skip) {
-  std::array<double, kContradictions> worst;
+std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Eigen::Vector3d& x, int skip) {
+  const std::vector<ViewMask>& masks = set.masks;
+  std::array<double, kMaxContradictions> worst;
   worst.fill(-kFar);
+  const int count = std::clamp(set.contradictions, 1, kMaxContradictions);
   int witnesses = 0;
   for (int m = 0; m < static_cast<int>(masks.size()); ++m) {
     if (m == skip) continue;
@@ -26,23 +28,23 @@ std::optional<double> OutsideBy(const Scene& scene, const std::vector<ViewMask>&
     if (!distance_px) continue;
     ++witnesses;
     double d = *distance_px * (x - masks[m].eye).norm() / masks[m].focal_px;
-    for (double& w : worst)
-      if (d > w) std::swap(d, w);
+    for (int k = 0; k < count; ++k)
+      if (d > worst[k]) std::swap(d, worst[k]);
   }
   if (witnesses < kMinWitnesses) return std::nullopt;
-  return worst.back();
+  return worst[count - 1];
 }
 
-std::optional<double> FindContact(const Scene& scene, const std::vector<ViewMask>& masks, int own, const Reach& reach,
-                                  double slack, OutlineSample& sample) {
-  const Eigen::Vector3d& eye = masks[own].eye;
+std::optional<double> FindContact(const Scene& scene, const MaskSet& set, int own, const Reach& reach, double slack,
+                                  OutlineSample& sample) {
+  const Eigen::Vector3d& eye = set.masks[own].eye;
   const double middle = (reach.center - eye).dot(sample.ray);
   const double off = (eye + middle * sample.ray - reach.center).norm();
   if (off >= reach.radius) return std::nullopt;
   const double half = std::sqrt(reach.radius * reach.radius - off * off);
   const double begin = std::max(middle - half, 1e-3 * reach.radius), end = middle + half;
   if (begin >= end) return std::nullopt;
-  const auto at = [&](double t) { return OutsideBy(scene, masks, eye + t * sample.ray, own); };
+  const auto at = [&](double t) { return OutsideBy(scene, set, eye + t * sample.ray, own); };
 
   const double step = (end - begin) / kSteps;
   double least = kFar, depth = begin;

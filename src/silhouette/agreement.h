@@ -12,14 +12,17 @@
 
 namespace glint::internal {
 
-// Rather than the largest distance by which a mask excludes a place, the one that this many masks exceed or reach: one
-// wrong view alone decides nothing.
-inline constexpr int kContradictions = 2;
 inline constexpr int kMinWitnesses = 4;  // views that must see a place to say something of it
 
+// The masks, and how many of them must say so before a place is excluded: not the largest distance by which a mask
+// excludes it counts, but the one that so many exceed or reach, so that fewer wrong ones decide nothing.
+struct MaskSet {
+  std::vector<ViewMask> masks;
+  int contradictions = 2;
+};
+
 // By how much x is outside of what the masks (but `skip`) leave room for, world units.
-std::optional<double> OutsideBy(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x,
-                                int skip = -1);
+std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Eigen::Vector3d& x, int skip = -1);
 
 // A ball that holds the object with room to spare.
 struct Reach {
@@ -29,7 +32,7 @@ struct Reach {
 
 // Sets near, depth and far of the sample by the masks of the other views; returns OutsideBy at `depth`, the least along
 // the ray. Nothing where they say nothing. `slack`: world units by which OutsideBy may exceed its least in [near, far].
-std::optional<double> FindContact(const Scene& scene, const std::vector<ViewMask>& masks, int own, const Reach& reach,
-                                  double slack, OutlineSample& sample);
+std::optional<double> FindContact(const Scene& scene, const MaskSet& set, int own, const Reach& reach, double slack,
+                                  OutlineSample& sample);
 
 }  // namespace glint::internal

@@ -4,33 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "core/check.h"
 #include "core/parallel.h"
 #include "silhouette/agreement.h"
-#include "silhouette/edge_search.h"
-#include "silhouette/segment.h"
+#include "silhouette/candidates.h"
+#include "silhouette/support.h"
 
 namespace glint {
 
+using internal::Candidate;
 using internal::ContourPoint;
-using internal::Projection;
 using internal::ViewMask;
+using internal::Work;
 
 struct Silhouettes::Impl {
   Scene views;  // without points
-  std::vector<ViewMask> masks;
+  internal::MaskSet masks;
   std::vector<OutlineSample> outline;
 };
 
 namespace {
 
-constexpr int kMaxSide = 320;         // px of the raster
-constexpr double kMargin = 0.25;      // of the projection's larger side
-constexpr double kReachRel = 0.10;    // of the diagonal: how far outside of the rough mesh the object may be
-constexpr double kCoreRel = 0.05;     // and inside of it from where on it is for sure
-constexpr double kStep = 2;           // px between samples
 constexpr double kMinOverlap = 0.5;   // of a mask with the rough mesh, intersection over union
 constexpr double kRoomRel = 0.02;     // of the diagonal: the other views' masks may leave this much room outside
 constexpr double kExcessRel = 0.006;  // or exclude the outline by this much
@@ -38,9 +33,8 @@ constexpr double kSlackRel = 0.004;   // see FindContact
 constexpr double kMinShare = 0.4;     // of its samples that a view must have confirmed
 constexpr size_t kMinViews = 4;
 constexpr int kMaxRounds = 4;
-constexpr double kGroundRel = 0.02;    // of the diagonal: lower than this an outline may be a shadow's
-constexpr double kMaskSigmaPx = 0.7;   // of a mask's outline, its px
-constexpr double kFoundSigmaPx = 0.5;  // of a found one's, raster px
+constexpr double kBesideRel = 0.03;  // of the diagonal: of another view's sample that supports one
+constexpr double kGroundRel = 0.02;  // of the diagonal: lower than this an outline may be a shadow's
 
 // Views spread over all of them.
 std::vector<size_t> ChosenViews(size_t count, size_t most) {
@@ -48,94 +42,6 @@ std::vector<size_t> ChosenViews(size_t count, size_t most) {
   const size_t n = std::min(count, most);
   for (size_t i = 0; i < n; ++i) chosen.push_back((2 * i + 1) * count / (2 * n));
   return chosen;
-}
-
-// A view with all that is worked out for it.
-struct Candidate {
-  ViewMask mask;
-  std::vector<ContourPoint> contour;  // with an edge, where it was found
-  double sigma_px = 0;                // raster px
-  double overlap = 0;                 // with the rough mesh's projection
-};
-
-struct Work {
-  const Scene& scene;
-  const ImageSource& images;
-  const RoughObject& rough;
-  double diagonal;
-  Eigen::Vector3d center;
-
-  double RasterFocal(size_t view, const internal::Raster& raster) const {
-    return MeanFocalLength(scene.views[view].camera) * raster.scale;
-  }
-  double DiagonalPx(size_t view, const internal::Raster& raster) const {
-    return diagonal * RasterFocal(view, raster) / (scene.views[view].Center() - center).norm();
-  }
-};
-
-double Overlap(const cv::Mat& a, const cv::Mat& b, double a_elsewhere) {
-  const double both = cv::countNonZero(a & b), any = cv::countNonZero(a | b);
-  return both / std::max(1.0, any + a_elsewhere);
-}
-
-void Finish(const Work& work, size_t view, const internal::Raster& raster, const cv::Mat& mask, Candidate& out) {
-  const Eigen::Vector3d eye = work.scene.views[view].Center();
-  out.mask = {view, raster, internal::SignedDistance(mask), eye, work.RasterFocal(view, raster)};
-  for (const ContourPoint& p : internal::Contour(out.mask.distance, kStep))
-    if (!raster.NearImageBorder(p.at, work.scene.views[view].camera, 3)) out.contour.push_back(p);
-}
-
-std::optional<Candidate> FromMask(const Work& work, size_t view) {
-  cv::Mat mask;
-  if (!work.images.LoadMask(view, mask)) return std::nullopt;
-  const auto projection = internal::ProjectMesh(work.scene.views[view], work.rough.mesh, kMargin, kMaxSide);
-  if (!projection) return std::nullopt;
-  const internal::Raster& raster = projection->raster;
-  cv::Mat small;
-  cv::resize(mask(raster.window), small, raster.size, 0, 0, cv::INTER_AREA);
-  small = small > 127;
-  Candidate out;
-  const double elsewhere =
-      (cv::countNonZero(mask) - cv::countNonZero(mask(raster.window))) * raster.scale * raster.scale;
-  out.overlap = Overlap(small, projection->distance < 0, elsewhere);
-  out.sigma_px = kMaskSigmaPx * std::max(1.0, raster.scale);
-  Finish(work, view, raster, small, out);
-  return out;
-}
-
-cv::Mat Hints(const Work& work, size_t view, const internal::Raster& raster) {
-  cv::Mat hints(raster.size, CV_8S, cv::Scalar(0));
-  for (size_t i = 0; i < work.scene.points.size(); ++i) {
-    if (work.rough.point_side[i] == 0) continue;
-    for (const Observation& o : work.scene.points[i].observations) {
-      if (o.view != view) continue;
-      const Eigen::Vector2d at = raster.FromImage(o.px.cast<double>());
-      const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
-      for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-        if (x + dx >= 0 && y + dy >= 0 && x + dx < hints.cols && y + dy < hints.rows)
-          hints.at<int8_t>(y + dy, x + dx) = work.rough.point_side[i];
-    }
-  }
-  return hints;
-}
-
-std::optional<Candidate> FromPhotograph(const Work& work, size_t view) {
-  const auto projection = internal::ProjectMesh(work.scene.views[view], work.rough.mesh, kMargin, kMaxSide);
-  cv::Mat image;
-  if (!projection || !work.images.Load(view, image)) return std::nullopt;
-  const internal::Raster& raster = projection->raster;
-  cv::Mat window = image(raster.window), small;
-  if (window.depth() == CV_16U) window.convertTo(window, CV_8U, 1.0 / 257);
-  cv::resize(window, small, raster.size, 0, 0, cv::INTER_AREA);
-  const double size = work.DiagonalPx(view, raster);
-  const cv::Mat mask = internal::Segment({small, projection->distance, Hints(work, view, raster),
-                                          std::max(3.0, kReachRel * size), std::max(2.0, kCoreRel * size)});
-  Candidate out;
-  out.overlap = Overlap(mask, projection->distance < 0, 0);
-  out.sigma_px = kFoundSigmaPx;
-  Finish(work, view, raster, mask, out);
-  out.contour = internal::OnEdges(small, out.contour);
-  return out;
 }
 
 // The sample without its depth; nothing where the camera has no rays.
@@ -160,18 +66,18 @@ struct Judged {
 };
 
 // What the other views say of one's outline.
-Judged Judge(const Work& work, const std::vector<ViewMask>& masks, int own, const Candidate& candidate) {
+Judged Judge(const Work& work, const internal::MaskSet& set, int own, const Candidate& candidate) {
   Judged out;
   const internal::Reach reach{work.center, 0.75 * work.diagonal};
   for (const ContourPoint& p : candidate.contour) {
-    std::optional<OutlineSample> s = RayOf(work, masks[own], p);
+    std::optional<OutlineSample> s = RayOf(work, set.masks[own], p);
     if (!s) continue;
     ++out.count;
-    const auto outside = internal::FindContact(work.scene, masks, own, reach, kSlackRel * work.diagonal, *s);
+    const auto outside = internal::FindContact(work.scene, set, own, reach, kSlackRel * work.diagonal, *s);
     if (!outside || *outside > kExcessRel * work.diagonal || *outside < -kRoomRel * work.diagonal) continue;
-    s->sigma = candidate.sigma_px * s->depth / masks[own].focal_px;
-    if (work.rough.ground &&
-        work.rough.ground->signedDistance(masks[own].eye + s->depth * s->ray) < kGroundRel * work.diagonal)
+    s->sigma = candidate.sigma_px * s->depth / set.masks[own].focal_px;
+    if (candidate.found && work.rough.ground &&
+        work.rough.ground->signedDistance(set.masks[own].eye + s->depth * s->ray) < kGroundRel * work.diagonal)
       continue;
     out.trusted.push_back(*s);
   }
@@ -179,15 +85,15 @@ Judged Judge(const Work& work, const std::vector<ViewMask>& masks, int own, cons
 }
 
 // Leaves out views that the others contradict, until the rest agree.
-void KeepWhatAgrees(const Work& work, std::vector<Candidate>& candidates, std::vector<ViewMask>& masks,
+void KeepWhatAgrees(const Work& work, std::vector<Candidate>& candidates, internal::MaskSet& set,
                     std::vector<OutlineSample>& outline, SilhouetteSummary& summary, Progress& progress) {
   for (int round = 0; round < kMaxRounds; ++round) {
-    masks.clear();
-    for (const Candidate& c : candidates) masks.push_back(c.mask);
+    set.masks.clear();
+    for (const Candidate& c : candidates) set.masks.push_back(c.mask);
     std::vector<Judged> judged(candidates.size());
     ParallelFor(candidates.size(), 1, [&](size_t i) {
       progress.ThrowIfCancelled();
-      judged[i] = Judge(work, masks, static_cast<int>(i), candidates[i]);
+      judged[i] = Judge(work, set, static_cast<int>(i), candidates[i]);
     });
     outline.clear();
     std::vector<Candidate> kept;
@@ -203,7 +109,20 @@ void KeepWhatAgrees(const Work& work, std::vector<Candidate>& candidates, std::v
     if (all) break;
   }
   summary.num_trusted_views = candidates.size();
-  summary.num_trusted_samples = outline.size();
+}
+
+// Leaves out what no two other views have beside it: a wrong outline that touches what the others leave room for.
+std::vector<OutlineSample> Supported(const Work& work, const std::vector<OutlineSample>& outline) {
+  const OutlineNeighbors neighbors(work.scene, outline);
+  std::vector<uint8_t> keep(outline.size());
+  ParallelFor(outline.size(), 64, [&](size_t i) {
+    const Support s = neighbors.Of(i, kBesideRel * work.diagonal);
+    keep[i] = s.views >= 3 && std::abs(s.offset) < kExcessRel * work.diagonal;
+  });
+  std::vector<OutlineSample> out;
+  for (size_t i = 0; i < outline.size(); ++i)
+    if (keep[i]) out.push_back(outline[i]);
+  return out;
 }
 
 template <class Make>
@@ -266,23 +185,26 @@ Silhouettes FindSilhouettes(const Scene& scene, const ImageSource& images, const
   if (options.use == "none" || rough.mesh.empty()) return out;
   const Work work{scene, images, rough, Diagonal(rough.mesh), BoundingBox(rough.mesh).center()};
   const std::vector<size_t> views = ChosenViews(scene.views.size(), static_cast<size_t>(options.max_views));
-  std::vector<Candidate> candidates = Collect(views, progress, [&](size_t v) { return FromMask(work, v); });
+  std::vector<Candidate> candidates = Collect(views, progress, [&](size_t v) { return internal::FromMask(work, v); });
   s.source = "masks";
   if (!ShowTheObject(candidates)) {
     candidates.clear();
     s.source = "";
     if (options.use == "masks") return out;
     s.source = "photographs";
-    candidates = Collect(views, progress, [&](size_t v) { return FromPhotograph(work, v); });
+    candidates = Collect(views, progress, [&](size_t v) { return internal::FromPhotograph(work, v); });
   }
   s.num_views = candidates.size();
+  // A mask is wrong here and there if it was found; a given one as a whole or not at all.
+  out.impl_->masks.contradictions = s.source == "masks" ? 2 : 2 + static_cast<int>(candidates.size() / 32);
   if (candidates.size() < kMinViews) return out;
   KeepWhatAgrees(work, candidates, out.impl_->masks, out.impl_->outline, s, progress);
   if (s.num_trusted_views < kMinViews || 2 * s.num_trusted_views < s.num_views) {
     out.impl_->outline.clear();
-    out.impl_->masks.clear();
-    s.num_trusted_samples = 0;
+    out.impl_->masks.masks.clear();
   }
+  if (s.source == "photographs") out.impl_->outline = Supported(work, out.impl_->outline);
+  s.num_trusted_samples = out.impl_->outline.size();
   return out;
 }
 

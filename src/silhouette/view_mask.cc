@@ -105,6 +105,7 @@ std::optional<double> ViewMask::DistanceAt(const View& in, const Eigen::Vector2d
   const Eigen::Vector2d inside = at.cwiseMax(Eigen::Vector2d::Constant(0.5))
                                      .cwiseMin(Eigen::Vector2d(raster.size.width - 0.5, raster.size.height - 0.5));
   const double there = Bilinear(distance, inside);
+  if (std::isnan(there)) return std::nullopt;
   return there + (at - inside).norm();
 }
 

@@ -43,11 +43,12 @@ std::optional<Projection> ProjectMesh(const View& view, const TriangleMesh& mesh
 struct ViewMask {
   size_t view = 0;
   Raster raster;
-  cv::Mat distance;
+  cv::Mat distance;  // NaN: not known
   Eigen::Vector3d eye;
   double focal_px = 0;  // in the raster's px
 
-  // Distance in raster px at image px; outside of the raster grows with the way from it. Nothing outside of the image.
+  // Distance in raster px at image px; outside of the raster grows with the way from it. Nothing outside of the image
+  // and where it is not known.
   std::optional<double> DistanceAt(const View& in, const Eigen::Vector2d& px) const;
 };
 

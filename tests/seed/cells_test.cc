@@ -5,11 +5,11 @@
 
 #include "core/parallel.h"
 #include "geometry/mesh_checks.h"
+#include "geometry/point_index.h"
 #include "seed/cell_surface.h"
 #include "seed/clusters.h"
 #include "seed/convex_hull.h"
 #include "seed/min_cut.h"
-#include "seed/point_index.h"
 #include "seed/ray_votes.h"
 #include "seed/tetrahedra.h"
 #include "seed/visibility_cut.h"

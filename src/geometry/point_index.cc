@@ -1,4 +1,4 @@
-#include "seed/point_index.h"
+#include "geometry/point_index.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

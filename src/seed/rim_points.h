@@ -1,0 +1,39 @@
+// What the object's outlines add to its sparse points.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "colmap/scene.h"
+#include "geometry/triangle_mesh.h"
+#include "seed/ray_votes.h"
+#include "silhouette/outline.h"
+
+namespace glint {
+
+// A place on the surface that an outline shows, where there are no sparse points.
+struct RimPoint {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;  // unit, out of the object
+  double sigma = 0;        // world units
+};
+
+// What outlines tell the sparse surface. Empty: nothing.
+struct RimEvidence {
+  std::vector<RimPoint> points;
+  std::vector<FreeLine> free_lines;  // rays that pass just outside of the object
+  double depth = 0;                  // world units: matter this far behind every rim point
+};
+
+// Places of samples that are known well along their rays, averaged over their neighbours, thinned, where `points` (the
+// object's) are missing; to `carve`, also rays beside all samples: one wrong outline may cut off what is thin.
+// `diagonal`: the object's, world units.
+RimEvidence RimFromOutline(const Scene& scene, const std::vector<OutlineSample>& outline,
+                           const std::vector<Eigen::Vector3d>& points, double diagonal, bool carve);
+
+// Share of the samples whose ray, moved into the object by a little, meets the mesh and, moved out by as much, does
+// not. 1 if there are none.
+double OutlineFit(const Scene& scene, const std::vector<OutlineSample>& outline, const TriangleMesh& mesh);
+
+}  // namespace glint

@@ -1,0 +1,114 @@
+#include "seed/shape.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "geometry/components.h"
+#include "geometry/self_intersections.h"
+#include "sdf/extract_mesh.h"
+#include "sdf/mesh_to_level_set.h"
+
+namespace glint {
+namespace {
+
+constexpr int kRounds = 3;  // of surface, fairing, and leaving out the points that it disbelieves
+constexpr int kMaxStiffenings = 4;
+constexpr double kMendVoxels = 0.7;     // edges of the smooth seed: about as fine as it is
+constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
+constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
+
+// What the smooth surface should pass: the object's points on the sparse surface, and its foot on the ground. Many
+// views that agree are hardly wrong; two views agree on any mismatch along their epipolar line.
+std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& surface,
+                                    const PointReliability& reliability, const RimEvidence& rim) {
+  const double foot_sigma = kFootSigmaRel * Diagonal(surface.mesh);
+  std::vector<Attachment> attachments;
+  for (size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
+    if (surface.scene_point[v] == kMiddleVertex) continue;
+    Attachment a{surface.mesh.vertices[v], foot_sigma, 1, surface.scene_point[v]};
+    if (const int point = surface.scene_point[v]; point >= 0) {
+      const double views = static_cast<double>(scene.points[point].observations.size());
+      a.sigma = reliability.sigma[point];
+      a.credit = std::clamp((views - 1) / 2, 0.5, 3.0);
+    } else if (point <= kFirstRimVertex) {
+      a.sigma = rim.points[kFirstRimVertex - point].sigma;
+      a.extra = true;
+    }
+    attachments.push_back(a);
+  }
+  return attachments;
+}
+
+TriangleMesh LargestPiece(const TriangleMesh& mesh) {
+  const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));
+  size_t largest = 0;
+  for (size_t k = 1; k < pieces.list.size(); ++k)
+    if (pieces.list[k].volume > pieces.list[largest].volume) largest = k;
+  TriangleMesh out = mesh;
+  out.faces.clear();
+  for (size_t f = 0; f < mesh.faces.size(); ++f)
+    if (pieces.of_face[f] == largest) out.faces.push_back(mesh.faces[f]);
+  return WithoutUnusedVertices(out);
+}
+
+// Fairs ever more stiffly until the surface does not pass through itself; if it always does, takes it by its inside.
+FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
+                            const FairContext& context, FairOptions options, bool& folded) {
+  FairResult result;
+  folded = false;
+  for (int attempt = 0; attempt < kMaxStiffenings; ++attempt) {
+    result = FairThroughPoints(mesh, attachments, context, options);
+    if (SelfIntersections(result.mesh, 1).empty()) return result;
+    options.smoothing *= 1.6;
+  }
+  // Its inside, by winding number, has a surface that does not.
+  const double voxel = kMendVoxels * options.edge_rel * Diagonal(result.mesh);
+  TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(result.mesh, voxel, {.sign = "winding"})));
+  if (mended.empty() || !SelfIntersections(mended, 1).empty()) {
+    folded = true;
+    return result;
+  }
+  result.mesh = std::move(mended);
+  return result;
+}
+
+// Takes the points that the smooth surface disbelieves out of the object; true if there were any.
+bool DropDoubted(const std::vector<Attachment>& attachments, const FairResult& fair, PointReliability& reliability,
+                 ObjectChoice& choice) {
+  bool any = false;
+  for (size_t i = 0; i < attachments.size(); ++i) {
+    const int point = attachments[i].point;
+    if (point < 0 || fair.trust[i] > kMinTrust || choice.role[point] != PointRole::kObject) continue;
+    reliability.status[point] = PointStatus::kVirtual;
+    choice.role[point] = PointRole::kUnused;
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace
+
+long GenusOf(const TriangleMesh& mesh) {
+  const long euler = static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.faces.size()) / 2;
+  return 1 - euler / 2;
+}
+
+Shape MakeShape(const Scene& scene, PointReliability& reliability, ObjectChoice& choice, const RimEvidence& rim,
+                const CutOptions& cut, const FairOptions& fair_options, Progress& progress) {
+  FairContext context;
+  for (const View& view : scene.views) context.eyes.push_back(view.Center());
+  if (choice.ground) context.ground = choice.ground->plane;
+  Shape shape;
+  for (int round = 0; round < kRounds; ++round) {
+    shape.sparse = MakeSparseSurface(scene, reliability, choice, cut, rim);
+    progress.ThrowIfCancelled();
+    if (shape.sparse.mesh.empty()) return {};
+    const std::vector<Attachment> attachments = Attachments(scene, shape.sparse, reliability, rim);
+    FairResult fair = FairWithoutFolds(shape.sparse.mesh, attachments, context, fair_options, shape.folded);
+    shape.smooth = std::move(fair.mesh);
+    if (round + 1 == kRounds || !DropDoubted(attachments, fair, reliability, choice)) break;
+  }
+  return shape;
+}
+
+}  // namespace glint

@@ -1,0 +1,33 @@
+// The object's points to a closed surface, sparse and smooth.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "colmap/scene.h"
+#include "core/progress.h"
+#include "geometry/triangle_mesh.h"
+#include "seed/fair.h"
+#include "seed/object_choice.h"
+#include "seed/reliable_points.h"
+#include "seed/rim_points.h"
+#include "seed/sparse_surface.h"
+#include "seed/visibility_cut.h"
+
+namespace glint {
+
+struct Shape {
+  SparseSurface sparse;  // empty if the points enclose nothing
+  TriangleMesh smooth;   // the same, faired through the points
+  bool folded = false;   // the smooth one passes through itself
+};
+
+// Takes points out of the object that the smooth surface disbelieves, which it notes in `reliability` and `choice`, and
+// makes it anew without them.
+Shape MakeShape(const Scene& scene, PointReliability& reliability, ObjectChoice& choice, const RimEvidence& rim,
+                const CutOptions& cut, const FairOptions& fair, Progress& progress);
+
+// Sum over the pieces; the mesh is closed and manifold.
+long GenusOf(const TriangleMesh& mesh);
+
+}  // namespace glint

@@ -1,0 +1,123 @@
+#include "silhouette/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "silhouette/edge_search.h"
+#include "silhouette/segment.h"
+
+namespace glint::internal {
+namespace {
+
+constexpr int kMaxSide = 320;       // px of the raster
+constexpr double kMargin = 0.35;    // of the projection's larger side
+constexpr double kReachRel = 0.15;  // of the diagonal: how far outside of the rough mesh the object may be
+constexpr double kClippedPx = 2;
+constexpr double kCoreRel = 0.05;      // and inside of it from where on it is for sure
+constexpr double kStep = 2;            // px between samples
+constexpr double kMaskSigmaPx = 0.7;   // of a mask's outline, its px
+constexpr double kFoundSigmaPx = 0.5;  // of a found one's, raster px
+
+double Overlap(const cv::Mat& a, const cv::Mat& b, double a_elsewhere) {
+  const double both = cv::countNonZero(a & b), any = cv::countNonZero(a | b);
+  return both / std::max(1.0, any + a_elsewhere);
+}
+
+void Finish(const Work& work, size_t view, const Raster& raster, const cv::Mat& mask, Candidate& out) {
+  const Eigen::Vector3d eye = work.scene.views[view].Center();
+  out.mask = {view, raster, SignedDistance(mask), eye, work.RasterFocal(view, raster)};
+  for (const ContourPoint& p : Contour(out.mask.distance, kStep))
+    if (!raster.NearImageBorder(p.at, work.scene.views[view].camera, 3)) out.contour.push_back(p);
+}
+
+// Only what hangs together with what is the object for sure.
+cv::Mat WithoutIslands(const cv::Mat& mask, const cv::Mat& core) {
+  cv::Mat labels, out = mask.clone();
+  std::vector<uint8_t> keep(cv::connectedComponents(mask, labels, 4), 0);
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (core.at<uint8_t>(y, x)) keep[labels.at<int>(y, x)] = 1;
+  keep[0] = 0;
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (!keep[labels.at<int>(y, x)]) out.at<uint8_t>(y, x) = 0;
+  return out;
+}
+
+// Where the object goes up to where it was looked for, it may go on: places outside whose nearest bit of outline is
+// there become NaN.
+void ForgetBeyond(const cv::Mat& mask, const cv::Mat& limit, cv::Mat& distance) {
+  cv::Mat nearest, labels;
+  cv::distanceTransform(~mask, nearest, labels, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
+  std::vector<uint8_t> clipped(mask.total() + 1, 0);
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (mask.at<uint8_t>(y, x) && limit.at<uint8_t>(y, x)) clipped[labels.at<int>(y, x)] = 1;
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (!mask.at<uint8_t>(y, x) && clipped[labels.at<int>(y, x)])
+        distance.at<float>(y, x) = std::numeric_limits<float>::quiet_NaN();
+}
+
+cv::Mat Hints(const Work& work, size_t view, const Raster& raster) {
+  cv::Mat hints(raster.size, CV_8S, cv::Scalar(0));
+  for (size_t i = 0; i < work.scene.points.size(); ++i) {
+    if (work.rough.point_side[i] == 0) continue;
+    for (const Observation& o : work.scene.points[i].observations) {
+      if (o.view != view) continue;
+      const Eigen::Vector2d at = raster.FromImage(o.px.cast<double>());
+      const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
+      for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+        if (x + dx >= 0 && y + dy >= 0 && x + dx < hints.cols && y + dy < hints.rows)
+          hints.at<int8_t>(y + dy, x + dx) = work.rough.point_side[i];
+    }
+  }
+  return hints;
+}
+
+}  // namespace
+
+std::optional<Candidate> FromMask(const Work& work, size_t view) {
+  cv::Mat mask;
+  if (!work.images.LoadMask(view, mask)) return std::nullopt;
+  const auto projection = ProjectMesh(work.scene.views[view], work.rough.mesh, kMargin, kMaxSide);
+  if (!projection) return std::nullopt;
+  const Raster& raster = projection->raster;
+  cv::Mat small;
+  cv::resize(mask(raster.window), small, raster.size, 0, 0, cv::INTER_AREA);
+  small = small > 127;
+  Candidate out;
+  const double elsewhere =
+      (cv::countNonZero(mask) - cv::countNonZero(mask(raster.window))) * raster.scale * raster.scale;
+  out.overlap = Overlap(small, projection->distance < 0, elsewhere);
+  out.sigma_px = kMaskSigmaPx * std::max(1.0, raster.scale);
+  Finish(work, view, raster, small, out);
+  return out;
+}
+
+std::optional<Candidate> FromPhotograph(const Work& work, size_t view) {
+  const auto projection = ProjectMesh(work.scene.views[view], work.rough.mesh, kMargin, kMaxSide);
+  cv::Mat image;
+  if (!projection || !work.images.Load(view, image)) return std::nullopt;
+  const Raster& raster = projection->raster;
+  cv::Mat window = image(raster.window), small;
+  if (window.depth() == CV_16U) window.convertTo(window, CV_8U, 1.0 / 257);
+  cv::resize(window, small, raster.size, 0, 0, cv::INTER_AREA);
+  const double size = work.DiagonalPx(view, raster);
+  const double reach = std::max(3.0, kReachRel * size), core = std::max(2.0, kCoreRel * size);
+  const cv::Mat mask = WithoutIslands(Segment({small, projection->distance, Hints(work, view, raster), reach, core}),
+                                      projection->distance < -core);
+  Candidate out;
+  out.overlap = Overlap(mask, projection->distance < 0, 0);
+  out.sigma_px = kFoundSigmaPx;
+  out.found = true;
+  Finish(work, view, raster, mask, out);
+  out.contour = OnEdges(small, out.contour);
+  ForgetBeyond(mask, projection->distance > reach - kClippedPx, out.mask.distance);
+  return out;
+}
+
+}  // namespace glint::internal

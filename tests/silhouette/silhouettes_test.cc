@@ -1,0 +1,199 @@
+#include "silhouette/silhouettes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/parallel.h"
+#include "geometry/triangle_mesh.h"
+#include "io/project_images.h"
+#include "silhouette/support.h"
+#include "tests/seed/simulated_scene.h"
+
+namespace glint {
+namespace {
+
+constexpr int kViews = 24;
+constexpr double kBallRadius = 1;
+
+TriangleMesh Ball(double radius) {
+  constexpr int kRings = 24, kSectors = 48;
+  TriangleMesh mesh;
+  for (int i = 0; i <= kRings; ++i)
+    for (int j = 0; j < kSectors; ++j) {
+      const double a = M_PI * i / kRings, b = 2 * M_PI * j / kSectors;
+      mesh.vertices.emplace_back(radius * std::sin(a) * std::cos(b), radius * std::sin(a) * std::sin(b),
+                                 radius * std::cos(a));
+    }
+  for (int i = 0; i < kRings; ++i)
+    for (int j = 0; j < kSectors; ++j) {
+      const int p = i * kSectors + j, q = i * kSectors + (j + 1) % kSectors;
+      if (i > 0) mesh.faces.emplace_back(p, p + kSectors, q);
+      if (i + 1 < kRings) mesh.faces.emplace_back(q, p + kSectors, q + kSectors);
+    }
+  return mesh;
+}
+
+// Whether the ray through a pixel meets the ball.
+cv::Mat BallMask(const View& view, double radius) {
+  cv::Mat mask(static_cast<int>(view.camera.height), static_cast<int>(view.camera.width), CV_8U, cv::Scalar(0));
+  const Eigen::Vector3d eye = view.Center();
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (eye.cross(*view.RayThrough({x + 0.5, y + 0.5})).norm() < radius) mask.at<uint8_t>(y, x) = 255;
+  return mask;
+}
+
+// A bluish ball before a grey wall with noise.
+cv::Mat Photograph(const cv::Mat& mask) {
+  cv::Mat image(mask.size(), CV_8UC3, cv::Scalar(120, 125, 128)), noise(mask.size(), CV_8UC3);
+  image.setTo(cv::Scalar(130, 70, 40), mask);
+  cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 12);
+  return image + noise;
+}
+
+class Outlines : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scene_ = new Scene(DomeScene(kViews, 5));
+    for (View& v : scene_->views) v.camera = {1, CameraModel::kPinhole, 400, 300, {450, 450, 200, 150}};
+    masks_ = new std::vector<cv::Mat>;
+    photographs_ = new std::vector<cv::Mat>;
+    for (const View& v : scene_->views) {
+      masks_->push_back(BallMask(v, kBallRadius));
+      photographs_->push_back(Photograph(masks_->back()));
+    }
+  }
+  static void TearDownTestSuite() {
+    delete scene_;
+    delete masks_;
+    delete photographs_;
+  }
+
+  // Largest distance of the samples' rays from touching the ball, and of their places from it.
+  static void ExpectOnBall(const std::vector<OutlineSample>& outline, double across, double place) {
+    double worst_across = 0, worst_place = 0, worst_normal = 1;
+    for (const OutlineSample& s : outline) {
+      const Eigen::Vector3d eye = scene_->views[s.view].Center();
+      const Eigen::Vector3d x = eye + s.depth * s.ray;
+      worst_across = std::max(worst_across, std::abs(eye.cross(s.ray).norm() - kBallRadius));
+      worst_place = std::max(worst_place, std::abs(x.norm() - kBallRadius));
+      worst_normal = std::min(worst_normal, s.normal.dot((eye - eye.dot(s.ray) * s.ray).normalized()));
+      EXPECT_LE(s.near, s.depth);
+      EXPECT_GE(s.far, s.depth);
+      EXPECT_GT(s.sigma, 0);
+      EXPECT_NEAR(s.normal.dot(s.ray), 0, 1e-9);
+    }
+    EXPECT_LT(worst_across, across);
+    EXPECT_LT(worst_place, place);
+    EXPECT_GT(worst_normal, std::cos(8 * M_PI / 180));
+  }
+
+  static const Scene* scene_;
+  static std::vector<cv::Mat>* masks_;
+  static std::vector<cv::Mat>* photographs_;
+};
+
+const Scene* Outlines::scene_ = nullptr;
+std::vector<cv::Mat>* Outlines::masks_ = nullptr;
+std::vector<cv::Mat>* Outlines::photographs_ = nullptr;
+
+TEST_F(Outlines, OfGivenMasksTouchTheBall) {
+  const TriangleMesh rough = Ball(0.9);
+  SilhouetteSummary summary;
+  const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(*photographs_, *masks_), {rough, {}}, {}, &summary);
+  EXPECT_EQ(summary.source, "masks");
+  EXPECT_EQ(summary.num_trusted_views, static_cast<size_t>(kViews));
+  ASSERT_GT(s.outline().size(), 2000u);
+  ExpectOnBall(s.outline(), 0.012, 0.05);
+  EXPECT_LT(*s.OutsideBy({0, 0, 0}), -0.5);
+  EXPECT_GT(*s.OutsideBy({1.3, 0, 0}), 0.1);
+}
+
+TEST_F(Outlines, AreFoundInPhotographs) {
+  const TriangleMesh rough = Ball(0.9);
+  SilhouetteSummary summary;
+  const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(*photographs_), {rough, {}}, {}, &summary);
+  EXPECT_EQ(summary.source, "photographs");
+  ASSERT_GT(s.outline().size(), 2000u);
+  ExpectOnBall(s.outline(), 0.02, 0.06);
+}
+
+TEST_F(Outlines, OfOneWrongViewAreLeftOut) {
+  const TriangleMesh rough = Ball(0.9);
+  std::vector<cv::Mat> masks = *masks_;
+  cv::erode(masks[5], masks[5], cv::Mat(), cv::Point(-1, -1), 12);
+  const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(*photographs_, masks), {rough, {}});
+  ASSERT_GT(s.outline().size(), 2000u);
+  for (const OutlineSample& sample : s.outline()) EXPECT_NE(sample.view, 5u);
+  ExpectOnBall(s.outline(), 0.012, 0.06);
+}
+
+TEST_F(Outlines, AreNotTakenFromMasksOfSomethingElse) {
+  const TriangleMesh rough = Ball(0.9);
+  std::vector<cv::Mat> masks;
+  for (const cv::Mat& m : *masks_) {  // all but a few highlights
+    masks.emplace_back(m.size(), CV_8U, cv::Scalar(255));
+    cv::circle(masks.back(), {200, 150}, 9, cv::Scalar(0), cv::FILLED);
+  }
+  SilhouetteSummary summary;
+  const Silhouettes s =
+      FindSilhouettes(*scene_, MemoryImages(*photographs_, masks), {rough, {}}, {.use = "masks"}, &summary);
+  EXPECT_TRUE(s.outline().empty());
+  EXPECT_EQ(summary.source, "");
+}
+
+TEST_F(Outlines, ThatViewsDoNotConfirmAreDropped) {
+  const TriangleMesh rough = Ball(0.9);
+  std::vector<cv::Mat> noise;
+  for (size_t i = 0; i < masks_->size(); ++i) {
+    noise.emplace_back((*masks_)[i].size(), CV_8UC3);
+    cv::RNG(100 + i).fill(noise.back(), cv::RNG::UNIFORM, 0, 255);
+  }
+  SilhouetteSummary summary;
+  const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(noise), {rough, {}}, {}, &summary);
+  // What is left lies no farther off than the rough shape that the search began with.
+  EXPECT_LT(summary.num_trusted_samples, summary.num_samples / 2);
+}
+
+TEST_F(Outlines, AreTheSameForAnyNumberOfThreads) {
+  const TriangleMesh rough = Ball(0.95);
+  std::vector<std::vector<OutlineSample>> results;
+  for (int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    results.push_back(
+        FindSilhouettes(*scene_, MemoryImages(*photographs_), {rough, {}}, {.max_views = 8}).outline());
+  }
+  ASSERT_EQ(results[0].size(), results[1].size());
+  for (size_t i = 0; i < results[0].size(); ++i) {
+    EXPECT_EQ(results[0][i].px, results[1][i].px);
+    EXPECT_EQ(results[0][i].depth, results[1][i].depth);
+  }
+}
+
+TEST(OutlineNeighbors, SayHowFarOffASampleIs) {
+  Scene scene = DomeScene(3, 5);
+  std::vector<OutlineSample> outline;
+  for (uint32_t v = 0; v < 3; ++v)
+    for (int i = 0; i < 5; ++i) {
+      // On the plane z = 0 that every ray touches, but the first sample 0.01 above it.
+      const Eigen::Vector3d x(0.01 * i, 0.01 * v, v == 0 && i == 0 ? 0.01 : 0), eye = scene.views[v].Center();
+      OutlineSample s;
+      s.view = v;
+      s.ray = (x - eye).normalized();
+      s.depth = (x - eye).norm();
+      s.normal = Eigen::Vector3d::UnitZ();
+      outline.push_back(s);
+    }
+  const OutlineNeighbors neighbors(scene, outline);
+  const Support first = neighbors.Of(0, 0.2), other = neighbors.Of(7, 0.2);
+  EXPECT_EQ(first.views, 3u);
+  EXPECT_EQ(first.samples, 15u);
+  EXPECT_NEAR(first.offset, -0.01, 1e-9);
+  EXPECT_NEAR(other.offset, 0, 1e-9);
+}
+
+}  // namespace
+}  // namespace glint
