@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -57,8 +58,9 @@ cv::Mat Photograph(const cv::Mat& mask) {
 class Outlines : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scene_ = new Scene(DomeScene(kViews, 5));
-    for (View& v : scene_->views) v.camera = {1, CameraModel::kPinhole, 400, 300, {450, 450, 200, 150}};
+    Scene scene = DomeScene(kViews, 5);
+    for (View& v : scene.views) v.camera = {1, CameraModel::kPinhole, 400, 300, {450, 450, 200, 150}};
+    scene_ = new Scene(scene);
     masks_ = new std::vector<cv::Mat>;
     photographs_ = new std::vector<cv::Mat>;
     for (const View& v : scene_->views) {
@@ -72,23 +74,30 @@ class Outlines : public testing::Test {
     delete photographs_;
   }
 
-  // Largest distance of the samples' rays from touching the ball, and of their places from it.
+  // 95 of 100 samples: their rays touch the ball to `across`, their places are on it to `place`.
   static void ExpectOnBall(const std::vector<OutlineSample>& outline, double across, double place) {
-    double worst_across = 0, worst_place = 0, worst_normal = 1;
+    std::vector<double> off_ray, off_place, turned_deg;
     for (const OutlineSample& s : outline) {
       const Eigen::Vector3d eye = scene_->views[s.view].Center();
       const Eigen::Vector3d x = eye + s.depth * s.ray;
-      worst_across = std::max(worst_across, std::abs(eye.cross(s.ray).norm() - kBallRadius));
-      worst_place = std::max(worst_place, std::abs(x.norm() - kBallRadius));
-      worst_normal = std::min(worst_normal, s.normal.dot((eye - eye.dot(s.ray) * s.ray).normalized()));
+      const Eigen::Vector3d normal = (eye - eye.dot(s.ray) * s.ray).normalized();
+      off_ray.push_back(std::abs(eye.cross(s.ray).norm() - kBallRadius));
+      off_place.push_back(std::abs(x.norm() - kBallRadius));
+      turned_deg.push_back(std::acos(std::min(1.0, s.normal.dot(normal))) * 180 / M_PI);
       EXPECT_LE(s.near, s.depth);
       EXPECT_GE(s.far, s.depth);
       EXPECT_GT(s.sigma, 0);
       EXPECT_NEAR(s.normal.dot(s.ray), 0, 1e-9);
     }
-    EXPECT_LT(worst_across, across);
-    EXPECT_LT(worst_place, place);
-    EXPECT_GT(worst_normal, std::cos(8 * M_PI / 180));
+    EXPECT_LT(Most(off_ray), across);
+    EXPECT_LT(Most(off_place), place);
+    EXPECT_LT(Most(turned_deg), 7);
+  }
+
+  static double Most(std::vector<double> values) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 95 / 100);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
   }
 
   static const Scene* scene_;
@@ -107,7 +116,7 @@ TEST_F(Outlines, OfGivenMasksTouchTheBall) {
   EXPECT_EQ(summary.source, "masks");
   EXPECT_EQ(summary.num_trusted_views, static_cast<size_t>(kViews));
   ASSERT_GT(s.outline().size(), 2000u);
-  ExpectOnBall(s.outline(), 0.012, 0.05);
+  ExpectOnBall(s.outline(), 0.012, 0.03);
   EXPECT_LT(*s.OutsideBy({0, 0, 0}), -0.5);
   EXPECT_GT(*s.OutsideBy({1.3, 0, 0}), 0.1);
 }
@@ -118,7 +127,7 @@ TEST_F(Outlines, AreFoundInPhotographs) {
   const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(*photographs_), {rough, {}}, {}, &summary);
   EXPECT_EQ(summary.source, "photographs");
   ASSERT_GT(s.outline().size(), 2000u);
-  ExpectOnBall(s.outline(), 0.02, 0.06);
+  ExpectOnBall(s.outline(), 0.015, 0.03);
 }
 
 TEST_F(Outlines, OfOneWrongViewAreLeftOut) {
@@ -128,7 +137,7 @@ TEST_F(Outlines, OfOneWrongViewAreLeftOut) {
   const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(*photographs_, masks), {rough, {}});
   ASSERT_GT(s.outline().size(), 2000u);
   for (const OutlineSample& sample : s.outline()) EXPECT_NE(sample.view, 5u);
-  ExpectOnBall(s.outline(), 0.012, 0.06);
+  ExpectOnBall(s.outline(), 0.012, 0.03);
 }
 
 TEST_F(Outlines, AreNotTakenFromMasksOfSomethingElse) {
@@ -153,8 +162,7 @@ TEST_F(Outlines, ThatViewsDoNotConfirmAreDropped) {
     cv::RNG(100 + i).fill(noise.back(), cv::RNG::UNIFORM, 0, 255);
   }
   SilhouetteSummary summary;
-  const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(noise), {rough, {}}, {}, &summary);
-  // What is left lies no farther off than the rough shape that the search began with.
+  const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(noise), {rough, {}}, {.max_views = 10}, &summary);
   EXPECT_LT(summary.num_trusted_samples, summary.num_samples / 2);
 }
 
@@ -163,8 +171,7 @@ TEST_F(Outlines, AreTheSameForAnyNumberOfThreads) {
   std::vector<std::vector<OutlineSample>> results;
   for (int threads : {1, 2}) {
     const ThreadLimit limit(threads);
-    results.push_back(
-        FindSilhouettes(*scene_, MemoryImages(*photographs_), {rough, {}}, {.max_views = 8}).outline());
+    results.push_back(FindSilhouettes(*scene_, MemoryImages(*photographs_), {rough, {}}, {.max_views = 8}).outline());
   }
   ASSERT_EQ(results[0].size(), results[1].size());
   for (size_t i = 0; i < results[0].size(); ++i) {
@@ -184,6 +191,7 @@ TEST(OutlineNeighbors, SayHowFarOffASampleIs) {
       s.view = v;
       s.ray = (x - eye).normalized();
       s.depth = (x - eye).norm();
+      s.px.setZero();
       s.normal = Eigen::Vector3d::UnitZ();
       outline.push_back(s);
     }
