@@ -205,6 +205,11 @@ Silhouettes FindSilhouettes(const Scene& scene, const ImageSource& images, const
   }
   if (s.source == "photographs") out.impl_->outline = Supported(work, out.impl_->outline);
   s.num_trusted_samples = out.impl_->outline.size();
+  if (s.source == "photographs" && 2 * s.num_trusted_samples < s.num_samples) {  // most of what was found is wrong
+    out.impl_->outline.clear();
+    out.impl_->masks.masks.clear();
+    s.num_trusted_samples = 0;
+  }
   return out;
 }
 
