@@ -39,7 +39,10 @@ void LevelSetOptions::Visit(OptionVisitor& v) {
           point_weight);
   v.Field({.name = "highlight_weight", .help = "weight of the highlights; 0: not used", .min = 0, .max = 1e4},
           highlight_weight);
-  v.Field({.name = "outline_weight", .help = "weight of the object's outlines; 0: not used", .min = 0, .max = 1e4},
+  v.Field({.name = "outline_weight",
+           .help = "weight of the object's outlines, whose next places err alike; 0: not used",
+           .min = 0,
+           .max = 1e4},
           outline_weight);
   v.Field({.name = "reweightings", .help = "solves with weights of outliers lowered", .min = 1, .max = 20},
           reweightings);

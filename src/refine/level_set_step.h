@@ -23,7 +23,7 @@ struct LevelSetOptions {
   double seed_length_rel = 0.06;
   double point_weight = 1;
   double highlight_weight = 1;
-  double outline_weight = 1;
+  double outline_weight = 0.1;
   int reweightings = 2;
   int max_iterations = 200;
   double tolerance = 0.05;

@@ -29,7 +29,7 @@ struct RefineOptions {
   double min_point_sigma_rel = 0.0002;
   bool use_highlights = true;
   bool use_lobes = true;
-  bool use_outlines = true;
+  bool use_outlines = false;
   std::string method = "variational";  // or "flow"
   std::string bend = "auto";           // "seed", "flat", "auto": what the evidence is for
   std::string lights = "auto";         // "fixed", "solve", "auto": solve those with a standard deviation

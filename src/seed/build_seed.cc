@@ -15,7 +15,10 @@ namespace {
 
 constexpr double kRegionMargin = 0.05;  // of the diagonal
 constexpr int kOutlinePasses = 2;       // found outlines are better where the shape already is
-constexpr int kSubdivisions = 2;        // of the smooth surface: its facets must not show at the finest voxels
+// Of what does not fit the outlines without them, the most that may still not fit with them: outlines from photographs
+// are a pixel or so off everywhere, which points are not.
+constexpr double kWorthwhile = 0.85;
+constexpr int kSubdivisions = 2;  // of the smooth surface: its facets must not show at the finest voxels
 
 double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
   const ClosestPointQuery query(mesh);
@@ -89,7 +92,8 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   s.outline_fit = OutlineFit(scene, outline, made.shape.smooth);
   if (with.shape.sparse.mesh.empty() || (with.shape.folded && !made.shape.folded)) return false;
   const double fit = OutlineFit(scene, outline, with.shape.smooth);
-  if (fit <= s.outline_fit) return false;
+  const double most_left = s.outlines_used ? 1 : kWorthwhile;
+  if (1 - fit >= most_left * (1 - s.outline_fit)) return false;
   s.outline_fit = fit;
   s.outlines_used = true;
   s.num_rim_points = rim.points.size();
