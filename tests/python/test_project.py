@@ -166,7 +166,7 @@ def test_run_until(project, tmp_path):
 def test_run_errors(project, tmp_path):
     with pytest.raises(glint.InputError, match="refine.voxel_rel"):
         glint.run(project, tmp_path / "out", config={"refine.voxel_rel": 7})
-    with pytest.raises(glint.InputError, match="expected one of seed, detect, lights, gate, refine, report"):
+    with pytest.raises(glint.InputError, match="expected one of photos, seed, detect, lights, gate, refine, report"):
         glint.run(project, tmp_path / "out", until="sed")
     with pytest.raises(glint.InputError, match="nothing-here"):
         glint.run(tmp_path / "nothing-here", tmp_path / "out")
