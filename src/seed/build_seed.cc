@@ -17,6 +17,7 @@ constexpr double kRegionMargin = 0.05;  // of the diagonal
 constexpr int kOutlinePasses = 2;       // found outlines are better where the shape already is
 // Of what does not fit the outlines without them, the most that may still not fit with them: outlines from photographs
 // are a pixel or so off everywhere, which points are not.
+constexpr double kGoodWithout = 0.75;  // share that fits: what points alone explain so well they know better
 constexpr double kWorthwhile = 0.85;
 constexpr int kSubdivisions = 2;  // of the smooth surface: its facets must not show at the finest voxels
 
@@ -92,6 +93,7 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   s.outline_fit = OutlineFit(scene, outline, made.shape.smooth);
   if (with.shape.sparse.mesh.empty() || (with.shape.folded && !made.shape.folded)) return false;
   const double fit = OutlineFit(scene, outline, with.shape.smooth);
+  if (!s.outlines_used && found.source == "photographs" && s.outline_fit_before > kGoodWithout) return false;
   const double most_left = s.outlines_used ? 1 : kWorthwhile;
   if (1 - fit >= most_left * (1 - s.outline_fit)) return false;
   s.outline_fit = fit;
