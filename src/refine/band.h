@@ -29,6 +29,22 @@ class Band : public BandTopology {
   bool Trilinear(const Eigen::Vector3d& x_in_world, std::array<int32_t, 8>& voxels,
                  std::array<double, 8>& weights) const;
 
+  // Calls with(voxel, squared distance in voxels) for the band's voxels within a ball.
+  template <class With>
+  void ForVoxelsInBall(const Eigen::Vector3d& x_in_world, double radius_voxels, const With& with) const {
+    const Eigen::Vector3d center = ToIndexSpace(x_in_world);
+    const Eigen::Vector3i low = (center.array() - radius_voxels).ceil().cast<int>();
+    const Eigen::Vector3i high = (center.array() + radius_voxels).floor().cast<int>();
+    for (int i = low[0]; i <= high[0]; ++i)
+      for (int j = low[1]; j <= high[1]; ++j)
+        for (int k = low[2]; k <= high[2]; ++k) {
+          const double squared = (Eigen::Vector3d(i, j, k) - center).squaredNorm();
+          if (squared > radius_voxels * radius_voxels) continue;
+          const int32_t v = Find({i, j, k});
+          if (v != kNone) with(v, squared);
+        }
+  }
+
   // A copy of the level set with other values at the voxels of the band (clamped to ± background).
   LevelSet WithValues(const std::vector<float>& phi) const;
 

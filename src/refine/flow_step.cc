@@ -46,23 +46,6 @@ struct Forces {
   std::vector<float> force;               // F
 };
 
-// Calls with(voxel, squared distance) for the band's voxels within `radius` of x.
-template <class With>
-void ForBall(const Band& band, const Eigen::Vector3d& x, double radius, const With& with) {
-  const Eigen::Vector3d center = band.ToIndexSpace(x);
-  const double reach = radius / band.voxel_size();
-  const Eigen::Vector3i low = (center.array() - reach).ceil().cast<int>();
-  const Eigen::Vector3i high = (center.array() + reach).floor().cast<int>();
-  for (int i = low[0]; i <= high[0]; ++i)
-    for (int j = low[1]; j <= high[1]; ++j)
-      for (int k = low[2]; k <= high[2]; ++k) {
-        const double squared = (Eigen::Vector3d(i, j, k) - center).squaredNorm();
-        if (squared > reach * reach) continue;
-        const int32_t v = band.Find({i, j, k});
-        if (v != Band::kNone) with(static_cast<size_t>(v), squared * band.voxel_size() * band.voxel_size());
-      }
-}
-
 Forces LayForces(const Band& band, const LevelSet& surface, const StepInput& input, const FlowOptions& options) {
   const size_t n = band.size();
   Forces f{std::vector<float>(n, 0), std::vector<Eigen::Vector3f>(n, Eigen::Vector3f::Zero()),
@@ -71,16 +54,17 @@ Forces LayForces(const Band& band, const LevelSet& surface, const StepInput& inp
     const double sigma = std::max(options.kernel_share * contact.reach, band.voxel_size());
     // Where the bundle has the contact the field should be zero.
     const double off = contact.sigma_position > 0 ? surface.Value(contact.bundle_position) : 0;
-    ForBall(band, contact.position, kKernelReach * sigma, [&](size_t v, double squared) {
-      const float k = static_cast<float>(std::exp(-0.5 * squared / (sigma * sigma)));
+    const double sigma_voxels = sigma / band.voxel_size();
+    band.ForVoxelsInBall(contact.position, kKernelReach * sigma_voxels, [&](int32_t v, double squared) {
+      const float k = static_cast<float>(std::exp(-0.5 * squared / (sigma_voxels * sigma_voxels)));
       f.weight[v] += k;
       f.weighted[v] += k * contact.normal.cast<float>();
       f.force[v] += k * static_cast<float>(-off);
     });
   }
   for (const SurfacePoint& point : input.points)
-    ForBall(band, point.position, options.point_reach_rel, [&](size_t v, double squared) {
-      f.distance[v] = std::min(f.distance[v], static_cast<float>(std::sqrt(squared)));
+    band.ForVoxelsInBall(point.position, options.point_reach_rel / band.voxel_size(), [&](int32_t v, double squared) {
+      f.distance[v] = std::min(f.distance[v], static_cast<float>(band.voxel_size() * std::sqrt(squared)));
     });
   // Where contacts are dense the weights stay at 1.
   for (size_t v = 0; v < n; ++v) {

@@ -17,7 +17,7 @@ constexpr double kSampleTolerance = 0.1;
 constexpr size_t kGrain = 1 << 12;
 constexpr float kUnknownNormal = static_cast<float>(20 * M_PI / 180);
 
-// A vector of six-sided dice a light: near enough to normal for what is only squared and summed.
+// A vector of sums of coins a light: near enough to normal for what is only squared and summed.
 std::vector<Eigen::Vector3d> StandardNormals(uint64_t seed, size_t count) {
   std::vector<Eigen::Vector3d> out(count);
   for (size_t i = 0; i < count; ++i)

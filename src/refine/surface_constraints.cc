@@ -32,22 +32,13 @@ struct Tap {
 
 // Voxels of a ball about x with Gaussian weights that sum to 1; empty if none has all its neighbours.
 std::vector<Tap> GaussianTaps(const Band& band, const Eigen::Vector3d& x, double sigma_voxels) {
-  const Eigen::Vector3d center = band.ToIndexSpace(x);
-  const double reach = kFootprintReach * sigma_voxels;
-  const Eigen::Vector3i low = (center.array() - reach).ceil().cast<int>();
-  const Eigen::Vector3i high = (center.array() + reach).floor().cast<int>();
   std::vector<Tap> taps;
   double sum = 0;
-  for (int i = low[0]; i <= high[0]; ++i)
-    for (int j = low[1]; j <= high[1]; ++j)
-      for (int k = low[2]; k <= high[2]; ++k) {
-        const double squared = (Eigen::Vector3d(i, j, k) - center).squaredNorm();
-        if (squared > reach * reach) continue;
-        const int32_t v = band.Find({i, j, k});
-        if (v == Band::kNone || !band.HasAllNeighbors(v)) continue;
-        taps.push_back({v, std::exp(-0.5 * squared / (sigma_voxels * sigma_voxels))});
-        sum += taps.back().weight;
-      }
+  band.ForVoxelsInBall(x, kFootprintReach * sigma_voxels, [&](int32_t v, double squared) {
+    if (!band.HasAllNeighbors(v)) return;
+    taps.push_back({v, std::exp(-0.5 * squared / (sigma_voxels * sigma_voxels))});
+    sum += taps.back().weight;
+  });
   for (Tap& tap : taps) tap.weight /= sum;
   return taps;
 }
