@@ -9,12 +9,13 @@ namespace glint {
 // The whole way from a project to a mesh: what decides each stage's result, what it leaves in the workspace, what is
 // done for it, and what the stages after it take.
 std::vector<PlannedStage> Flow::Plan() {
-  const PlannedStage seed = {.stage = RunStage::kSeed,
-                             .given = {"model", "images", "mesh"},
-                             .options = {arguments_.mesh.empty() ? "seed" : "given_mesh"},
-                             .leaves = {out_.Start(), out_.Seed(), out_.PointsOnObject(), out_.Points(), out_.Outline()},
-                             .make = [this] { MakeSeed(); },
-                             .take = [this] { TakeSeed(); }};
+  const PlannedStage seed = {
+      .stage = RunStage::kSeed,
+      .given = {"model", "images", "mesh"},
+      .options = {arguments_.mesh.empty() ? "seed" : "given_mesh"},
+      .leaves = {out_.Start(), out_.Seed(), out_.PointsOnObject(), out_.Points(), out_.Outline()},
+      .make = [this] { MakeSeed(); },
+      .take = [this] { TakeSeed(); }};
   const PlannedStage detect = {.stage = RunStage::kDetect,
                                .given = {"model", "images"},
                                .options = {"detect"},

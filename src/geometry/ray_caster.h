@@ -1,21 +1,20 @@
 // Nearest hits of rays with a triangle mesh, on Embree.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
-
-#include <Eigen/Core>
 
 #include "geometry/triangle_mesh.h"
 
 namespace glint {
 
 struct RayHit {
-  double t;                  // distance along the (unit) direction
+  double t;  // distance along the (unit) direction
   Eigen::Vector3d position;
-  Eigen::Vector3d normal;    // unit geometric normal of the face, as the mesh is oriented
+  Eigen::Vector3d normal;  // unit geometric normal of the face, as the mesh is oriented
   int face;
-  double u, v;               // barycentric weights of the face's second and third vertex
+  double u, v;  // barycentric weights of the face's second and third vertex
 };
 
 // Keeps its own copy of the geometry. Queries are thread-safe. Embree works in float: positions are good to

@@ -8,9 +8,7 @@ Eigen::AlignedBox3d BoundingBox(const TriangleMesh& mesh) {
   return box;
 }
 
-double Diagonal(const TriangleMesh& mesh) {
-  return mesh.vertices.empty() ? 0.0 : BoundingBox(mesh).diagonal().norm();
-}
+double Diagonal(const TriangleMesh& mesh) { return mesh.vertices.empty() ? 0.0 : BoundingBox(mesh).diagonal().norm(); }
 
 namespace {
 
@@ -68,7 +66,8 @@ TriangleMesh WithoutUnusedVertices(const TriangleMesh& mesh) {
   pick(mesh.normals, out.normals);
   pick(mesh.colors, out.colors);
   pick(mesh.confidence, out.confidence);
-  for (const auto& [name, values] : mesh.scalars) pick(values, out.scalars.emplace_back(name, std::vector<float>()).second);
+  for (const auto& [name, values] : mesh.scalars)
+    pick(values, out.scalars.emplace_back(name, std::vector<float>()).second);
   return out;
 }
 

@@ -1,14 +1,13 @@
 // An indexed triangle mesh with optional attributes a vertex.
 #pragma once
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 
 namespace glint {
 
@@ -17,9 +16,9 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Eigen::Vector3i> faces;
 
-  std::vector<Eigen::Vector3d> normals;                 // unit, outward
-  std::vector<std::array<uint8_t, 3>> colors;           // sRGB
-  std::vector<float> confidence;                        // in [0, 1]
+  std::vector<Eigen::Vector3d> normals;                             // unit, outward
+  std::vector<std::array<uint8_t, 3>> colors;                       // sRGB
+  std::vector<float> confidence;                                    // in [0, 1]
   std::vector<std::pair<std::string, std::vector<float>>> scalars;  // any further named attribute
 
   bool empty() const { return faces.empty(); }

@@ -20,8 +20,8 @@ namespace glint {
 class ProjectImages : public ImageSource {
  public:
   // Looks which images are there; the missing are counted in one warning to `progress`. Throws InputError if there is
-  // no image folder, more than half of the views' images are missing, or one is a link out of the project and its folder
-  // was not named by the user.
+  // no image folder, more than half of the views' images are missing, or one is a link out of the project and its
+  // folder was not named by the user.
   ProjectImages(const Scene& scene, const ProjectPaths& paths, Progress& progress = Progress::Silent());
 
   size_t size() const override { return views_.size(); }
