@@ -1,5 +1,5 @@
-// Nothing that a mesh can be brings the module down or makes it lie. Ten seconds of one core by default, a minute in
-// .ci/run; for longer:
+// Nothing that a mesh can be brings the module down or makes it lie. Ten seconds of one core by default, twenty in
+// .ci/run, two minutes in scripts/check --all; for longer:
 //   GLINT_FUZZ_SECONDS=600 GLINT_FUZZ_SEED=7 sdf_test --gtest_filter='Fuzz.*'
 #include <gtest/gtest.h>
 #include <time.h>
