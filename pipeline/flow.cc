@@ -182,7 +182,7 @@ void Flow::TakeGated() {
 
 void Flow::RefineSurface() {
   const RefineResult refined =
-      Refine({scene_, seed_, point_used_, highlights_, lights_, outline_}, config_.refine, log_);
+      Refine({scene_, seed_, point_used_, highlights_, lights_, outline_, images_.get()}, config_.refine, log_);
   log_.Finish();
   for (const std::string& warning : refined.summary.warnings) log_.Warn(warning);
   TakeRefinedLights(refined);

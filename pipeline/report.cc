@@ -91,8 +91,15 @@ Json ToJson(const RefineSummary& refine) {
                {"highlights", refine.num_highlights},
                {"contacts", refine.num_contacts},
                {"points", refine.num_points},
+               {"tilts", refine.num_tilts},
                {"converged", refine.converged},
                {"warnings", refine.warnings}};
+  json["materials"] = Json::array();
+  for (const Material& material : refine.materials)
+    json["materials"].push_back({{"patches", material.num_patches},
+                                 {"scatter", material.scatter},
+                                 {"contrast", material.contrast},
+                                 {"used", material.used}});
   json["iterations"] = Json::array();
   for (const IterationSummary& iteration : refine.iterations)
     json["iterations"].push_back({{"voxel_rel", iteration.voxel_rel},

@@ -63,6 +63,21 @@ cv::Mat LinearMinChannel(const cv::Mat& image) {
   return out;
 }
 
+cv::Mat LinearColors(const cv::Mat& image) {
+  cv::Mat out(image.size(), CV_16UC3);
+  const int channels = image.channels();
+  for (int y = 0; y < image.rows; ++y) {
+    auto* to = out.ptr<cv::Vec3w>(y);
+    for (int x = 0; x < image.cols; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const int k = x * channels + (channels == 1 ? 0 : c);
+        to[x][c] = image.depth() == CV_8U ? Table<uint8_t>()[image.ptr<uint8_t>(y)[k]]
+                                          : Table<uint16_t>()[image.ptr<uint16_t>(y)[k]];
+      }
+  }
+  return out;
+}
+
 std::array<float, 3> LinearColor(const cv::Mat& image, int x, int y) {
   std::array<float, 3> color;
   const int channels = image.channels();

@@ -6,14 +6,13 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
-#include "geometry/ray_caster.h"
 #include "highlights/overlay.h"
+#include "highlights/surface_views.h"
 
 namespace glint {
 namespace {
 
 using Rgb = std::array<uint8_t, 3>;
-constexpr double kMarginRel = 1e-3;  // of the diagonal: a vertex is not hidden by the faces around it
 constexpr size_t kGrain = 512;
 
 // One look of a view at a vertex.
@@ -28,26 +27,13 @@ struct Look {
 // The views that see each vertex, the squarest `max_views` of them.
 std::vector<std::vector<Look>> FindLooks(const TriangleMesh& mesh, const Scene& scene,
                                          const SurfaceColorOptions& options) {
-  const RayCaster caster(mesh);
-  const double margin = kMarginRel * Diagonal(mesh);
+  const SurfaceViews views(mesh, scene);
   const double min_cosine = std::cos(options.max_incidence_deg * M_PI / 180);
-  std::vector<Eigen::Vector3d> centers;
-  for (const View& view : scene.views) centers.push_back(view.Center());
   std::vector<std::vector<Look>> looks(mesh.vertices.size());
   ParallelFor(mesh.vertices.size(), kGrain, [&](size_t v) {
-    const Eigen::Vector3d& x = mesh.vertices[v];
-    std::vector<std::pair<double, uint32_t>> square;  // minus cosine, so that the squarest comes first
-    for (uint32_t k = 0; k < centers.size(); ++k) {
-      const double cosine = (centers[k] - x).normalized().dot(mesh.normals[v]);
-      if (cosine > min_cosine) square.emplace_back(-cosine, k);
-    }
-    std::sort(square.begin(), square.end());
-    for (const auto& [minus_cosine, k] : square) {
-      if (looks[v].size() >= static_cast<size_t>(options.max_views)) break;
-      const auto px = scene.views[k].Project(x);
-      if (!px || !scene.views[k].Contains(*px) || caster.Occluded(x, centers[k], margin)) continue;
-      looks[v].push_back({k, static_cast<float>(px->x()), static_cast<float>(px->y())});
-    }
+    for (const SeenBy& seen :
+         views.Squarest(mesh.vertices[v], mesh.normals[v], min_cosine, static_cast<size_t>(options.max_views)))
+      looks[v].push_back({seen.view, seen.px.x(), seen.px.y()});
   });
   return looks;
 }

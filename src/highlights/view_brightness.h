@@ -3,22 +3,22 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <vector>
 
 #include "core/progress.h"
+#include "highlights/view_maps.h"
 #include "io/image_source.h"
 
 namespace glint {
 
-// Linear minimum over the channels of every view, halved as often as needed to fit the memory. Immutable, thread-safe.
+// Linear minimum over the channels of every view. Immutable, thread-safe.
 class ViewBrightness {
  public:
   // Streams the images once; views without an image stay empty.
   ViewBrightness(const ImageSource& images, size_t memory_bytes, Progress& progress);
 
-  bool Has(size_t view) const { return !maps_[view].empty(); }
+  bool Has(size_t view) const { return !maps_.map(view).empty(); }
 
   // From now on values are divided by these factors, one a view (exposure.h).
   void Equalise(std::vector<double> exposures);
@@ -35,15 +35,10 @@ class ViewBrightness {
   std::optional<double> MedianAround(size_t view, const Eigen::Vector2d& px, const Eigen::Matrix2d& moments_px) const;
 
   // Image pixels a map pixel is wide.
-  double PixelSize(size_t view) const { return sizes_[view]; }
+  double PixelSize(size_t view) const { return maps_.PixelSize(view); }
 
  private:
-  // The map's pixels within the radius; empty where MaxNear() is nullopt.
-  cv::Rect Window(size_t view, const Eigen::Vector2d& px, double radius_px) const;
-
-  std::vector<cv::Mat> maps_;   // CV_16UC1, 65535 = sensor white
-  std::vector<cv::Mat> masks_;  // CV_8UC1 of the same size, or empty
-  std::vector<double> sizes_;
+  ViewMaps maps_;  // CV_16UC1, 65535 = sensor white
   std::vector<double> exposures_;
 };
 

@@ -24,6 +24,8 @@ struct LevelSetOptions {
   double point_weight = 1;
   double highlight_weight = 1;
   double outline_weight = 0.1;
+  double shading_weight = 1;
+  double shading_length_rel = 0.05;
   int reweightings = 2;
   int max_iterations = 200;
   double tolerance = 0.05;
@@ -52,6 +54,9 @@ struct StepInput {
   const std::vector<OrientedPoint>& contacts;
   const std::vector<SurfacePoint>& points;
   const std::vector<OrientedPoint>& outline;  // where the surface touches rays through outlines
+  inline static const std::vector<Tilt> kNoTilts = {};
+  const std::vector<Tilt>& tilts = kNoTilts;  // of the normal, from shading
+  double tilt_spacing = 0;                    // from one to the next
 };
 
 LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options, StepSummary* summary);

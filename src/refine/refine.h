@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "geometry/triangle_mesh.h"
 #include "highlights/highlight.h"
+#include "io/image_source.h"
 #include "light/light.h"
 #include "refine/bundle.h"
 #include "refine/flow_step.h"
@@ -30,6 +31,8 @@ struct RefineOptions {
   bool use_highlights = true;
   bool use_lobes = true;
   bool use_outlines = false;
+  bool use_shading = true;
+  int image_memory_mb = 512;
   std::string method = "variational";  // or "flow"
   std::string bend = "auto";           // "seed", "flat", "auto": what the evidence is for
   std::string lights = "auto";         // "fixed", "solve", "auto": solve those with a standard deviation
@@ -48,6 +51,7 @@ struct RefineInput {
   std::vector<Highlight> highlights;
   std::vector<Light> lights;
   std::vector<OutlineSample> outline = {};
+  const ImageSource* images = nullptr;  // for shading; none: no shading
 };
 
 struct IterationSummary {
@@ -65,6 +69,8 @@ struct RefineSummary {
   int num_highlights = 0;
   int num_contacts = 0;
   int num_points = 0;
+  int num_tilts = 0;                // patches whose shading says something of their normal
+  std::vector<Material> materials;  // of the last look at the surface
   bool converged = false;
   std::vector<std::string> warnings;
 };

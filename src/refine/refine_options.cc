@@ -31,6 +31,13 @@ void RefineOptions::Visit(OptionVisitor& v) {
   v.Field({.name = "use_outlines",
            .help = "the surface touches the rays through the object's outlines, too: for accurate masks"},
           use_outlines);
+  v.Field({.name = "use_shading", .help = "the shading of the matte base under known lights, too"}, use_shading);
+  v.Field({.name = "image_memory_mb",
+           .help = "for small copies of the photographs",
+           .unit = "MB",
+           .min = 16,
+           .max = 1 << 20},
+          image_memory_mb);
   v.Field({.name = "method",
            .help = "of a step: variational: the least energy at once; flow: the papers' partial differential equation",
            .choices = {"variational", "flow"}},

@@ -10,6 +10,8 @@ namespace {
 constexpr double kFootprintShare = 0.1;
 constexpr double kLeastFootprintVoxels = 0.6;
 constexpr double kFootprintReach = 2.2;  // standard deviations
+// Of a tilt's direction across the normal: with less, the normal may turn either way.
+constexpr double kLeastLever = 0.15;
 
 // Weights of a squared residual in standard deviations. Contacts: Cauchy, they were judged in the bundle already.
 // Points: Geman and McClure, which lets go of the few that lie centimetres off.
@@ -118,19 +120,43 @@ void SurfaceConstraints::AddOutline(const std::vector<OrientedPoint>& touched, d
   }
 }
 
-void SurfaceConstraints::EndGroup(size_t first, bool is_point, int contact) {
+// A unit normal can only turn: what a tilt says along the normal as it is now would stretch the field instead.
+void SurfaceConstraints::AddTilts(const std::vector<Tilt>& tilts, double weight, double share) {
+  if (weight == 0) return;
+  for (const Tilt& tilt : tilts) {
+    const double footprint = std::max(0.5 * tilt.radius_world / band_.voxel_size(), kLeastFootprintVoxels);
+    const std::vector<Tap> mean = GaussianTaps(band_, tilt.position, footprint);
+    const Eigen::Vector3d normal = GradientOf(band_, mean).normalized();
+    const Eigen::Vector3d across = tilt.direction - normal.dot(tilt.direction) * normal;
+    const double lever = across.norm();
+    if (mean.empty() || !(lever > kLeastLever)) continue;
+    const size_t first = rows_.size();
+    for (const Tap& tap : mean)
+      for (int axis = 0; axis < 3; ++axis) {
+        const double c = across[axis] / lever * tap.weight / (2 * band_.voxel_size());
+        rows_.Push(band_.Neighbor(tap.voxel, axis, 1), c);
+        rows_.Push(band_.Neighbor(tap.voxel, axis, 0), -c);
+      }
+    const double sigma = tilt.sigma / lever;
+    rows_.Close((tilt.cosine - normal.dot(tilt.direction)) / lever, weight * share / (sigma * sigma));
+    EndGroup(first, true, -1, share);
+  }
+}
+
+void SurfaceConstraints::EndGroup(size_t first, bool is_point, int contact, double share) {
   for (size_t r = first; r < rows_.size(); ++r) base_weight_.push_back(rows_.weight[r]);
-  groups_.push_back({first, rows_.size(), is_point, contact});
+  groups_.push_back({first, rows_.size(), is_point, contact, share});
 }
 
 std::vector<double> SurfaceConstraints::RobustWeights(const std::vector<double>& phi, bool trust_contacts) const {
   std::vector<double> weights(rows_.size());
-  for (const auto& [first, last, is_point, contact] : groups_) {
+  for (const auto& [first, last, is_point, contact, share] : groups_) {
     double squared = 0;
     for (size_t r = first; r < last; ++r) {
       const double residual = rows_.Dot(r, phi) - rows_.target[r];
       squared += base_weight_[r] * residual * residual;
     }
+    squared /= share;
     const double weight = is_point ? PointWeight(squared) : (trust_contacts ? 1 : ContactWeight(squared));
     for (size_t r = first; r < last; ++r) weights[r] = weight * base_weight_[r];
   }

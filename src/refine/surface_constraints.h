@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "photometry/shading.h"
 #include "refine/band.h"
 #include "refine/band_rows.h"
 #include "refine/bundle.h"
@@ -33,6 +34,8 @@ class SurfaceConstraints {
   void AddContacts(const std::vector<OrientedPoint>& contacts, double weight);
   void AddPoints(const std::vector<SurfacePoint>& points, double weight);
   void AddOutline(const std::vector<OrientedPoint>& touched, double weight);
+  // `share`: of one in the weight, because its neighbours err alike; as outliers they are judged one by one.
+  void AddTilts(const std::vector<Tilt>& tilts, double weight, double share);
 
   // With the full weight each.
   const BandRows& rows() const { return rows_; }
@@ -50,10 +53,11 @@ class SurfaceConstraints {
   // Rows that are weighted down together.
   struct Group {
     size_t first, last;
-    bool is_point;  // or of an outline
+    bool is_point;  // or of an outline, or a tilt
     int contact;    // whose normal it is; -1: of no contact
+    double share;   // by which its weights are lower than a single measurement's
   };
-  void EndGroup(size_t first, bool is_point, int contact = -1);
+  void EndGroup(size_t first, bool is_point, int contact = -1, double share = 1);
 
   const Band& band_;
 

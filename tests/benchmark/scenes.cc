@@ -34,7 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Measured {
-  ErrorStats normal_in, distance_in, normal_out, distance_out;
+  ErrorStats normal_in, distance_in, normal_out, distance_out, normal_seen, distance_seen;
   ErrorStats normal_near;  // where highlights pass and the surface is there at all, within kNearRel
 };
 
@@ -50,26 +50,30 @@ struct Plan {
 };
 
 Measured Measure(const TriangleMesh& mesh, const TriangleMesh& truth, const std::vector<uint8_t>& region,
-                 const std::vector<uint8_t>& rest) {
+                 const std::vector<uint8_t>& rest, const std::vector<uint8_t>& seen) {
   const MeshComparison c = CompareMeshes(mesh, truth);
   std::vector<uint8_t> near = region;
   for (size_t v = 0; v < near.size(); ++v)
     near[v] = near[v] && c.reference_distance[v] < kNearRel * c.reference_diagonal;
   return {NormalStats(c, region), DistanceStatsRel(c, region), NormalStats(c, rest), DistanceStatsRel(c, rest),
-          NormalStats(c, near)};
+          NormalStats(c, seen),   DistanceStatsRel(c, seen),   NormalStats(c, near)};
 }
 
 void PrintHeader() {
-  fmt::print("{:<22} {:<12} {:>9} {:>8} {:>8} {:>8} {:>10} {:>9} {:>9} {:>10} {:>9}\n", "scene", "surface", "normals",
-             "median", "95 %", "< 2 %", "distance", "95 %", "normals", "distance", "seconds");
-  fmt::print("{:<22} {:<12} {:>57} {:>20}\n", "", "", "---- where highlights pass (deg, % diag) ----",
-             "---- elsewhere ----");
+  fmt::print("{:<22} {:<12} {:>9} {:>8} {:>8} {:>8} {:>10} {:>9} {:>9} {:>10} {:>9} {:>10} {:>9}\n", "scene", "surface",
+             "normals", "median", "95 %", "< 2 %", "distance", "95 %", "normals", "distance", "normals", "distance",
+             "seconds");
+  fmt::print("{:<22} {:<12} {:>57} {:>20} {:>20}\n", "", "", "---- where highlights pass (deg, % diag) ----",
+             "---- elsewhere ----", "-- there, seen --");
 }
 
 void PrintRow(const std::string& scene, const std::string& surface, const Measured& m, double seconds) {
-  fmt::print("{:<22} {:<12} {:>9.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>10.4f} {:>9.4f} {:>9.3f} {:>10.4f} {:>9.1f}\n",
-             scene, surface, m.normal_in.mean, m.normal_in.median, m.normal_in.p95, m.normal_near.mean,
-             100 * m.distance_in.mean, 100 * m.distance_in.p95, m.normal_out.mean, 100 * m.distance_out.mean, seconds);
+  fmt::print(
+      "{:<22} {:<12} {:>9.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>10.4f} {:>9.4f} {:>9.3f} {:>10.4f} {:>9.3f} {:>10.4f} "
+      "{:>9.1f}\n",
+      scene, surface, m.normal_in.mean, m.normal_in.median, m.normal_in.p95, m.normal_near.mean,
+      100 * m.distance_in.mean, 100 * m.distance_in.p95, m.normal_out.mean, 100 * m.distance_out.mean,
+      m.normal_seen.mean, 100 * m.distance_seen.mean, seconds);
   std::fflush(stdout);
 }
 
@@ -150,7 +154,7 @@ struct Case {
   std::string name;
   fs::path project, lights, out;
   const TriangleMesh& truth;
-  std::vector<uint8_t> region, rest;
+  std::vector<uint8_t> region, rest, seen;  // where highlights pass, elsewhere, and what of that a camera sees
   Eigen::Affine3d truth_from_project = Eigen::Affine3d::Identity();
 };
 
@@ -174,7 +178,7 @@ void MeasureCase(const Case& c, const Plan& plan) {
     TriangleMesh mesh = ReadMesh(file);
     Transform(c.truth_from_project, mesh);
     EnsureNormals(mesh);
-    return Measure(mesh, c.truth, c.region, c.rest);
+    return Measure(mesh, c.truth, c.region, c.rest, c.seen);
   };
   try {
     const double without_s = plan.without ? run(false, c.out / "without") : 0;
@@ -210,9 +214,12 @@ void MeasureSynthetic(const SyntheticOptions& options, const Plan& plan) {
   const Scene scene = MakeScene(ReadModel(FindProject(project).model));
   const std::vector<Light> lights = ReadLights(project / "truth" / "lights.json");
   std::vector<uint8_t> region = SweptRegion(truth, scene, lights);
-  std::vector<uint8_t> rest = Complement(region);
+  const std::vector<uint8_t> rest = Complement(region);
+  const std::vector<uint16_t> views = VisibleViews(truth, scene);
+  std::vector<uint8_t> seen = rest;
+  for (size_t v = 0; v < seen.size(); ++v) seen[v] = seen[v] && views[v] > 0;
   MeasureCase({name, project, plan.unknown ? fs::path() : project / "truth" / "lights.json", project / "glint", truth,
-               std::move(region), std::move(rest)},
+               std::move(region), rest, seen},
               plan);
 }
 
@@ -230,9 +237,9 @@ void MeasureVase(const fs::path& vase, const Plan& plan) {
   TriangleMesh colmap = ReadMesh(vase / "colmap-delaunay-sparse.ply");
   Transform(similarity, colmap);
   EnsureNormals(colmap);
-  PrintRow("vase", "COLMAP", Measure(colmap, truth, region, rest), 0);
+  PrintRow("vase", "COLMAP", Measure(colmap, truth, region, rest, rest), 0);
   MeasureCase({"vase", vase / "project", plan.unknown ? fs::path() : vase / "lights.json", plan.out / "vase", truth,
-               region, rest, similarity},
+               region, rest, rest, similarity},
               plan);
 }
 
