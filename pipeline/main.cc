@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/cancel_scope.h"
 #include "core/parallel.h"
 #include "pipeline/commands/command.h"
 #include "pipeline/ending.h"
@@ -50,6 +51,7 @@ void DeclareCommands(CLI::App& app, glint::CommandLine& line) {
 int RunAction(const glint::CommandLine& line) {
   glint::Terminal terminal(line.quiet ? glint::Verbosity::kQuiet : glint::Verbosity::kNormal);
   const glint::InterruptGuard interrupts;
+  const glint::CancelScope cancelled(terminal);
   const glint::ThreadLimit threads(line.threads);
   cv::setNumThreads(1);  // images are worked on in parallel; OpenCV's own threads would heed no limit
   try {

@@ -9,6 +9,8 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
+#include "core/cancel_scope.h"
+
 namespace glint {
 namespace {
 
@@ -36,9 +38,14 @@ void ParallelChunks(size_t count, size_t grain, const std::function<void(size_t,
   grain = std::max<size_t>(grain, 1);
   const size_t num_chunks = (count + grain - 1) / grain;
   LoopOrder order;
+  const Progress& asked = CancelScope::Current();
   tbb::parallel_for(tbb::blocked_range<size_t>(0, num_chunks, 1), [&](const auto& range) {
     order.BeginWork();
-    for (size_t c = range.begin(); c != range.end(); ++c) body(c * grain, std::min(count, (c + 1) * grain));
+    const CancelScope scope(asked);  // for loops within this one, on whatever thread
+    for (size_t c = range.begin(); c != range.end(); ++c) {
+      asked.ThrowIfCancelled();
+      body(c * grain, std::min(count, (c + 1) * grain));
+    }
     order.EndWork();
   });
 }

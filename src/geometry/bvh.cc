@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/cancel_scope.h"
 #include "core/parallel.h"
 
 namespace glint {
@@ -23,6 +24,7 @@ struct Bvh::Builder {
   std::vector<Node>& nodes;
   std::vector<uint32_t>& faces;
   std::vector<Eigen::Vector3d> centers;
+  const Progress& asked = CancelScope::Current();
 
   void Build(uint32_t node_index, uint32_t begin, uint32_t end) {
     Node& node = nodes[node_index];
@@ -53,6 +55,7 @@ struct Bvh::Builder {
     const uint32_t left = node_index + 1;
     node.right = left + NumNodes(half);
     if (count > 4096) {
+      asked.ThrowIfCancelled();
       tbb::parallel_invoke([&] { Build(left, begin, begin + half); }, [&] { Build(node.right, begin + half, end); });
     } else {
       Build(left, begin, begin + half);

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/cancel_scope.h"
 #include "core/check.h"
 #include "highlights/brightness.h"
 #include "highlights/lobe_fit.h"
@@ -148,9 +149,11 @@ std::vector<Highlight> DetectHighlights(const cv::Mat& image_bgr, const cv::Mat&
   const std::vector<Blob> blobs = FindBlobs(pyramid, masks, {options.min_strength, options.min_contrast, max_size_px});
 
   std::vector<Highlight> highlights;
-  for (const Blob& blob : blobs)
+  for (const Blob& blob : blobs) {
+    CancelScope::Current().ThrowIfCancelled();
     highlights.push_back(Describe(image_bgr, blob, pyramid[blob.level], masks.empty() ? cv::Mat() : masks[blob.level],
                                   view, max_size_px, options));
+  }
   DropHaloes(image_bgr.size(), highlights);
   std::stable_sort(highlights.begin(), highlights.end(), [](const Highlight& a, const Highlight& b) {
     if (a.strength != b.strength) return a.strength > b.strength;

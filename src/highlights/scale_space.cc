@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "core/cancel_scope.h"
 #include "highlights/bright_peaks.h"
 #include "highlights/flood.h"
 #include "highlights/place_index.h"
@@ -174,6 +175,7 @@ std::vector<Blob> FindBlobs(const std::vector<cv::Mat>& pyramid, const std::vect
     const cv::Mat& mask = mask_pyramid.empty() ? no_mask : mask_pyramid[level];
     const size_t num_finer = found.size();
     for (const BrightPeak& peak : FindPeaks(pyramid, level, options.min_strength, options.min_contrast)) {
+      CancelScope::Current().ThrowIfCancelled();
       if (!mask.empty() && !mask.ptr<uint8_t>(peak.at.y())[peak.at.x()]) continue;
       Ring ring(smooth, mask, peak.at);
       blob.level = level;

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "core/cancel_scope.h"
+
 namespace glint::internal {
 
 namespace {
@@ -67,7 +69,9 @@ std::vector<std::unique_ptr<Leaf>> ComputeLeaves(const TriangleMesh& mesh, const
   std::vector<std::unique_ptr<Leaf>> leaves(bins.size());
   if (closest) closest->assign(bins.size(), {});
   tbb::enumerable_thread_specific<TileScratch> scratches;
+  const Progress& asked = CancelScope::Current();
   tbb::parallel_for(tbb::blocked_range<size_t>(0, bins.size(), 16), [&](const auto& range) {
+    asked.ThrowIfCancelled();
     TileScratch& scratch = scratches.local();
     TileDistances distances{};
     for (size_t i = range.begin(); i != range.end(); ++i) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/cancel_scope.h"
 #include "core/error.h"
 #include "sdf/exact_side.h"
 #include "sdf/index_frame.h"
@@ -67,7 +68,9 @@ class DenseMaker {
     const Eigen::Vector3i tiles = (field.size.array() + kTileDim - 1) / kTileDim;
     tbb::enumerable_thread_specific<internal::TileScratch> scratches;
     const size_t num_columns = static_cast<size_t>(tiles[0]) * static_cast<size_t>(tiles[1]);
+    const Progress& asked = CancelScope::Current();
     tbb::parallel_for(size_t{0}, num_columns, [&](size_t column) {
+      asked.ThrowIfCancelled();
       internal::TileScratch& scratch = scratches.local();
       TileDistances distances{};
       std::vector<uint32_t> triangles;

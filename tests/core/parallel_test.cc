@@ -6,6 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/cancel_scope.h"
+#include "core/error.h"
+
 namespace glint {
 namespace {
 
@@ -59,6 +62,57 @@ TEST(Parallel, ExceptionsReachTheCaller) {
                              if (i == 42) throw std::runtime_error("42");
                            }),
                std::runtime_error);
+}
+
+// Cancelled from the outside, or by the work itself after some steps.
+class Wish : public Progress {
+ public:
+  bool Cancelled() const override { return cancelled; }
+  std::atomic<bool> cancelled = false;
+};
+
+TEST(CancelScope, LoopsEndBetweenChunks) {
+  Wish wish;
+  std::atomic<int> done = 0;
+  const auto work = [&] {
+    ParallelFor(1000000, 1, [&](size_t) {
+      if (++done == 100) wish.cancelled = true;
+    });
+  };
+  {
+    const CancelScope scope(wish);
+    EXPECT_THROW(work(), CancelledError);
+  }
+  EXPECT_LT(done, 10000);
+  EXPECT_NO_THROW(ParallelFor(10, 1, [](size_t) {})) << "out of the scope nobody is asked";
+}
+
+TEST(CancelScope, HoldsInLoopsWithinLoopsOnWhateverThread) {
+  Wish wish;
+  std::atomic<int> asked = 0, inner = 0;
+  const CancelScope scope(wish);
+  EXPECT_THROW(ParallelFor(64, 1,
+                           [&](size_t) {
+                             asked += &CancelScope::Current() == &wish;
+                             ParallelFor(1000000, 1, [&](size_t) {
+                               if (++inner == 100) wish.cancelled = true;
+                             });
+                           }),
+               CancelledError);
+  EXPECT_GT(asked, 0);
+  EXPECT_LT(inner, 10000);
+  EXPECT_EQ(&CancelScope::Current(), &wish);
+}
+
+TEST(CancelScope, TheInnermostIsAsked) {
+  Wish outer, inner;
+  outer.cancelled = true;
+  const CancelScope outside(outer);
+  {
+    const CancelScope inside(inner);
+    EXPECT_NO_THROW(ParallelFor(10, 1, [](size_t) {}));
+  }
+  EXPECT_THROW(ParallelFor(10, 1, [](size_t) {}), CancelledError);
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ TEST_F(FromPhotographs, TooFewRegisteredComesWithAdvice) {
 
 TEST_F(FromPhotographs, CtrlCEndsColmapAndKeepsWhatIsFinished) {
   colmap_.Write("mapper", "sleep 60 & echo $! > " + Path("pid") + "; wait");
-  const ProgramResult result = RunOn("photographs", {}, "timeout --preserve-status -s INT 3 ");
+  const ProgramResult result = RunOn("photographs", {}, InterruptWhen("[ -s \"" + Path("pid") + "\" ]"));
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_FALSE(testing_support::Runs(folder_ / "pid"));
   EXPECT_TRUE(fs::exists(folder_ / "out/colmap/matches.done"));

@@ -41,6 +41,12 @@ inline ProgramResult RunGlint(const std::vector<std::string>& arguments, const s
   return result;
 }
 
+// A prefix for RunGlint(): Ctrl-C once `condition` holds, words of the shell without single quotes; within a minute.
+inline std::string InterruptWhen(const std::string& condition) {
+  return "sh -c '\"$@\" & for i in $(seq 3000); do " + condition +
+         " && break; sleep 0.02; done; kill -INT $!; wait $!' sh";
+}
+
 // A folder of its own for the test that runs, removed with it.
 class ProgramTest : public ::testing::Test {
  protected:

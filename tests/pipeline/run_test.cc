@@ -6,8 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "light/light_io.h"
-#include "tests/pipeline/program.h"
-#include "tests/support/shared_folder.h"
+#include "tests/pipeline/shared_run.h"
 
 namespace glint {
 namespace {
@@ -17,32 +16,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-// One project and one finished run of it that the tests look at; they leave both as they are.
-class Run : public ProgramTest {
+class Run : public SharedRun {
  protected:
-  static void SetUpTestSuite() { shared_ = testing_support::SharedFolder("run_test", Make); }
-  static void Make(const fs::path& folder) {
-    shared_ = folder;
-    const ProgramResult synth =
-        RunGlint({"synth", "ellipsoid", "-o", Project(), "--views", "20", "--size", "320x240", "-q"});
-    ASSERT_EQ(synth.exit_code, 0) << synth.err;
-    const ProgramResult run = RunGlint(Arguments(Out().string(), {"--threads", "2"}));
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-  }
-
-  static std::string Project() { return (shared_ / "p").string(); }
-  static std::string Lights() { return (shared_ / "p/truth/lights.json").string(); }
-  static fs::path Out() { return shared_ / "out"; }
-
-  // A coarse level set: the flow is what is tested, not the last digit.
-  static std::vector<std::string> Arguments(const std::string& out, const std::vector<std::string>& more,
-                                            bool lights = true) {
-    std::vector<std::string> arguments = {"run", Project(), "-o", out, "--set", "refine.voxel_rel=0.02"};
-    if (lights) arguments.insert(arguments.end(), {"--lights", Lights()});
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-  }
-
   static Json Compare(const fs::path& mesh) {
     const ProgramResult result = RunGlint({"compare", mesh.string(), (shared_ / "p/truth/mesh.ply").string(), "--json",
                                            "--project", Project(), "--lights", Lights(), "-q"});
@@ -52,8 +27,6 @@ class Run : public ProgramTest {
   static double SweptNormalError(const fs::path& mesh) {
     return Compare(mesh)["regions"]["swept region"]["normal_deg"]["mean"];
   }
-
-  static inline fs::path shared_;
 };
 
 // What may differ between two runs of the same thing.
@@ -81,13 +54,13 @@ std::string Page(const fs::path& out) {
 
 TEST_F(Run, WritesEveryResult) {
   for (const char* name : {"mesh.ply", "sdf.vdb", "seed.ply", "lights.json", "config.yaml", "report.html",
-                           "report.json", "log.txt", "highlights/view_000.jpg.png", "highlights/view_019.jpg.png"})
+                           "report.json", "log.txt", "highlights/view_000.jpg.png", "highlights/view_011.jpg.png"})
     EXPECT_TRUE(fs::exists(Out() / name)) << name;
   EXPECT_THAT(ReadText(Out() / "mesh.ply").substr(0, 1000),
               AllOf(HasSubstr("property float nx"), HasSubstr("property float confidence")));
   const Json report = Report(Out());
   EXPECT_EQ(report["outcome"], "done");
-  EXPECT_EQ(report["project"]["views"], 20);
+  EXPECT_EQ(report["project"]["views"], kNumViews);
   EXPECT_GT(report["highlights"]["gate"]["accepted"], 5);
   EXPECT_FALSE(report["refine"]["iterations"].empty());
   EXPECT_THAT(RunGlint({"inspect", (Out() / "mesh.ply").string()}).out, HasSubstr("closed       yes"));
@@ -95,10 +68,10 @@ TEST_F(Run, WritesEveryResult) {
 }
 
 TEST_F(Run, ResolvedConfigurationRepeatsTheRun) {
-  EXPECT_THAT(ReadText(Out() / "config.yaml"), HasSubstr("voxel_rel: 0.02\n"));
+  EXPECT_THAT(ReadText(Out() / "config.yaml"), HasSubstr("voxel_rel: 0.03\n"));
   const ProgramResult result = RunGlint({"config", "--config", (Out() / "config.yaml").string()});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("voxel_rel: 0.02\n"));
+  EXPECT_THAT(result.out, HasSubstr("voxel_rel: 0.03\n"));
 }
 
 TEST_F(Run, ImprovesTheSurfaceWhereHighlightsPass) {
@@ -182,8 +155,7 @@ TEST_F(Run, LightsThatExplainNothingGiveNoResult) {
 TEST_F(Run, AMissingImageIsCountedAndLeftOut) {
   fs::copy(Project(), folder_ / "p", fs::copy_options::recursive);
   fs::remove(folder_ / "p/images/view_004.jpg");
-  const ProgramResult result =
-      RunGlint({"run", Path("p"), "-o", Path("out"), "--lights", Lights(), "--set", "refine.voxel_rel=0.02"});
+  const ProgramResult result = RunGlint(ArgumentsFor(Path("p"), Path("out"), {}));
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("warning"));
   EXPECT_EQ(Report(folder_ / "out")["project"]["missing_images"], 1);
@@ -200,7 +172,7 @@ TEST_F(Run, AMeshInPlaceOfTheSeed) {
 TEST_F(Run, CtrlCStopsAndLeavesNothingHalfWritten) {
   const ProgramResult result =
       RunGlint(Arguments(Path("stopped"), {"--set", "refine.voxel_rel=0.002", "--set", "refine.max_iterations=100"}),
-               "timeout --preserve-status -s INT 2");
+               InterruptWhen("grep -qs \"gate: done\" \"" + Path("stopped/log.txt") + "\""));
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_THAT(result.err, HasSubstr("stopped"));
   ExpectNoResults(folder_ / "stopped");

@@ -5,15 +5,12 @@
 #include "colmap/model.h"
 #include "io/mesh_io.h"
 #include "metrics/compare.h"
-#include "tests/pipeline/program.h"
-#include "tests/support/shared_folder.h"
+#include "tests/pipeline/shared_run.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kVoxelRel = 0.02;
 
 struct Units {
   const char* name;
@@ -21,29 +18,8 @@ struct Units {
   double offset;  // of the origin, in the new unit
 };
 
-class InOtherUnits : public ProgramTest, public ::testing::WithParamInterface<Units> {
- protected:
-  static void SetUpTestSuite() { shared_ = testing_support::SharedFolder("units_test", Make); }
-  static void Make(const fs::path& folder) {
-    shared_ = folder;
-    const ProgramResult synth =
-        RunGlint({"synth", "ellipsoid", "-o", (folder / "p").string(), "--views", "16", "--size", "240x180", "-q"});
-    ASSERT_EQ(synth.exit_code, 0) << synth.err;
-    const ProgramResult run = RunGlint(Arguments(folder / "p", folder / "out"));
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-  }
-
-  // The lights are distant: their directions hold in any unit.
-  static std::vector<std::string> Arguments(const fs::path& project, const fs::path& out) {
-    return {"run",      project.string(),
-            "-o",       out.string(),
-            "--lights", (shared_ / "p/truth/lights.json").string(),
-            "--set",    fmt::format("refine.voxel_rel={}", kVoxelRel),
-            "--set",    "output.overlays=false"};
-  }
-
-  static inline fs::path shared_;
-};
+// The lights are distant: their directions hold in any unit.
+class InOtherUnits : public SharedRun, public ::testing::WithParamInterface<Units> {};
 
 TEST_P(InOtherUnits, TheSameSurface) {
   const Eigen::Vector3d offset = GetParam().offset * Eigen::Vector3d(1, -1, 0.5);
@@ -55,7 +31,7 @@ TEST_P(InOtherUnits, TheSameSurface) {
   }
   WriteModel(model, folder_ / "p/sparse/0");
   fs::create_directory_symlink(shared_ / "p/images", folder_ / "p/images");
-  const ProgramResult run = RunGlint(Arguments(folder_ / "p", folder_ / "out"));
+  const ProgramResult run = RunGlint(ArgumentsFor(Path("p"), Path("out"), {"--set", "output.overlays=false"}));
   ASSERT_EQ(run.exit_code, 0) << run.err;
 
   const TriangleMesh expected = ReadMesh(shared_ / "out/mesh.ply");
