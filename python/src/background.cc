@@ -43,16 +43,6 @@ void Reports::Warn(std::string_view message) {
   events_.push_back({"warning", std::string(message)});
 }
 
-bool Reports::Cancelled() const {
-  std::lock_guard lock(mutex_);
-  return cancelled_;
-}
-
-void Reports::Cancel() {
-  std::lock_guard lock(mutex_);
-  cancelled_ = true;
-}
-
 std::deque<Reports::Event> Reports::Take() {
   std::lock_guard lock(mutex_);
   return std::exchange(events_, {});

@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <atomic>
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "core/cancel_scope.h"
 #include "core/progress.h"
 
 namespace glint::python {
@@ -32,19 +34,19 @@ class Reports : public Progress {
   void Advance(size_t steps = 1) override;
   void Info(std::string_view message) override;
   void Warn(std::string_view message) override;
-  bool Cancelled() const override;
+  bool Cancelled() const override { return cancelled_; }
 
-  void Cancel();
+  void Cancel() { cancelled_ = true; }
   std::deque<Event> Take();
 
  private:
   void EndLocked();
 
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::deque<Event> events_;
   std::string unit_;
   size_t done_ = 0, total_ = 0;
-  bool cancelled_ = false;
+  std::atomic<bool> cancelled_ = false;
 };
 
 // Calls callback(kind, text, done, total) for every report and looks for signals until `finished` (given the time to
@@ -52,11 +54,15 @@ class Reports : public Progress {
 void Attend(Reports& reports, const py::object& callback,
             const std::function<bool(std::chrono::milliseconds)>& finished);
 
-// The result of work(progress), done on a thread of its own. `work` must not touch Python. Call with the GIL held.
+// The result of work(progress), done on a thread of its own, where parallel loops end on Ctrl-C without asking
+// `progress`. `work` must not touch Python. Call with the GIL held.
 template <class Work>
 std::invoke_result_t<Work, Progress&> InBackground(const py::object& callback, const Work& work) {
   Reports reports;
-  auto result = std::async(std::launch::async, [&] { return work(static_cast<Progress&>(reports)); });
+  auto result = std::async(std::launch::async, [&] {
+    const CancelScope scope(reports);
+    return work(static_cast<Progress&>(reports));
+  });
   Attend(reports, callback,
          [&](std::chrono::milliseconds time) { return result.wait_for(time) == std::future_status::ready; });
   return result.get();

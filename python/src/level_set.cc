@@ -37,10 +37,7 @@ py::tuple ToDense(const LevelSet& level_set) {
   const openvdb::Vec3d origin = grid.indexToWorld(box.min());
   for (int r = 0; r < 4; ++r)
     for (int c = 0; c < 4; ++c) world_from_index.mutable_at(r, c) = c == 3 && r < 3 ? origin[r] : by_rows(c, r);
-  {
-    const py::gil_scoped_release release;
-    openvdb::tools::copyToDense(grid, dense);
-  }
+  InBackground(py::none(), [&](Progress&) { openvdb::tools::copyToDense(grid, dense); });
   return py::make_tuple(values, world_from_index);
 }
 
@@ -140,8 +137,7 @@ void BindLevelSet(py::module_& m) {
       "write_level_set",
       [](const std::string& path, const LevelSet& level_set) {
         if (level_set.empty()) throw InputError(path, "", "the level set is empty");
-        const py::gil_scoped_release release;
-        WriteVdb(path, level_set);
+        InBackground(py::none(), [&](Progress&) { WriteVdb(path, level_set); });
       },
       py::arg("path"), py::arg("level_set"));
   m.def("mesh_to_level_set", &FromMesh, py::arg("mesh"), py::arg("voxel_size"), py::arg("sign"),

@@ -152,8 +152,7 @@ void BindMesh(py::module_& m) {
       "write_mesh",
       [](const std::string& path, const py::dict& mesh) {
         const TriangleMesh written = MeshOf(mesh);
-        const py::gil_scoped_release release;
-        WriteMesh(path, written);
+        InBackground(py::none(), [&](Progress&) { WriteMesh(path, written); });
       },
       py::arg("path"), py::arg("mesh"));
   m.def("signed_distance", &SignedDistance, py::arg("mesh"), py::arg("points"), py::arg("sign"));

@@ -18,6 +18,7 @@ ARROW_RIGHT = "\ue014"
 ESCAPE = "\ue00c"
 MARKUP = "view_<!--<script>alert(1)&amp;.jpg"
 LAPTOP, PHONE = (1366, 850), (390, 844)
+VIEWS = 20
 
 checks = failures = 0
 
@@ -38,14 +39,15 @@ def make_reports(program, folder):
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     project = f"{folder}/p"
-    code, said = glint(program, "synth", "ellipsoid", "-o", project, "--views", "20", "--size", "320x240", "-q")
+    code, said = glint(program, "synth", "ellipsoid", "-o", project, "--views", str(VIEWS), "--size", "320x240", "-q")
     expect(code == 0, f"glint synth ({said.strip()})")
     for images in ("sparse/0/images.txt", "sparse/0/images.bin"):
         path = f"{project}/{images}"
         if os.path.exists(path):
             rename_in(path)
     os.rename(f"{project}/images/view_004.jpg", f"{project}/images/{MARKUP}")
-    common = ["run", project, "--lights", f"{project}/truth/lights.json", "--set", "refine.voxel_rel=0.02", "-q"]
+    common = ["run", project, "--lights", f"{project}/truth/lights.json", "--set", "refine.voxel_rel=0.03"]
+    common += ["--set", "refine.levels=2", "-q"]
     code, said = glint(program, *common, "-o", f"{folder}/done")
     expect(code == 0, f"glint run ({said.strip()})")
     code, _ = glint(program, *common, "-o", f"{folder}/gives_up", "--mesh", f"{folder}/done/seed.ply", "--set", "detect.min_strength=1")
@@ -145,7 +147,7 @@ def share_of(browser, share):
 
 
 def check_gallery(browser):
-    expect(browser.run("return document.querySelectorAll('#gallery li').length") == 20, "20 photographs")
+    expect(browser.run("return document.querySelectorAll('#gallery li').length") == VIEWS, "all photographs")
     names = browser.run("return [...document.querySelectorAll('#gallery .name')].map(n => n.textContent)")
     expect(MARKUP in names, "a name like markup is a text")
     expect(browser.run("return document.querySelectorAll('#gallery script, main script').length") == 0, "and no element")
@@ -167,7 +169,7 @@ def check_gallery(browser):
     expect(any(r.startswith("Used") for r in reasons), f"Tab says why one was used ({sorted(reasons)[:1]})")
     browser.press([ARROW_RIGHT])
     title = browser.run("return document.querySelector('#lightbox h3').textContent")
-    expect(title == names[(first + 1) % 20], f"the arrow key goes to the next ({title})")
+    expect(title == names[(first + 1) % VIEWS], f"the arrow key goes to the next ({title})")
     index = names.index(MARKUP)
     browser.press([ESCAPE])
     expect(not browser.run("return document.getElementById('lightbox').open"), "Escape closes it")
@@ -188,7 +190,7 @@ def check_words(browser):
         expect(part in text, f"the page says {part!r}")
     expect(browser.run("return document.querySelectorAll('#plots figure').length") >= 5, "plots of convergence")
     expect(browser.run("return document.querySelectorAll('#advice li').length") >= 1, "advice")
-    expect("voxel_rel: 0.02" in browser.run("return document.getElementById('config').textContent"), "configuration")
+    expect("voxel_rel: 0.03" in browser.run("return document.getElementById('config').textContent"), "configuration")
     browser.run("document.getElementById('theme').click()")
     expect(browser.run("return document.documentElement.dataset.theme") == "dark", "the button makes it dark")
     requests = browser.run("return performance.getEntriesByType('resource').filter(r => !r.name.startsWith('data:')).length")
@@ -198,6 +200,23 @@ def check_words(browser):
 def check_width(browser, what):
     wider = browser.run("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
     expect(wider <= 0, f"{what}: nothing sticks out to the right ({wider} px)")
+
+
+def check_look(browser, page, folder, name, dark):
+    browser.prefer_dark(dark)
+    open_page(browser, page)
+    settle(browser)
+    name += "_dark" if dark else ""
+    check_width(browser, name)
+    background = browser.run("return getComputedStyle(document.body).backgroundColor")
+    expect((background == "rgb(18, 21, 26)") == dark, f"{name}: its background is {background}")
+    if "--screenshots" in sys.argv:
+        browser.screenshot(f"{folder}/{name}_top.png")
+        for part in ("surface", "photographs"):
+            browser.run("document.getElementById(arguments[0]).scrollIntoView()", part)
+            settle(browser)
+            browser.screenshot(f"{folder}/{name}_{part}.png")
+    quiet(browser, name)
 
 
 def main():
@@ -212,28 +231,16 @@ def main():
         check_viewer(browser)
         check_gallery(browser)
         check_words(browser)
-        check_width(browser, "laptop")
         quiet(browser, "laptop")
         open_page(browser, gives_up)
         expect("no result" in browser.run("return document.body.innerText"), "a run that gave up says so")
         expect("Problem" in browser.run("return document.getElementById('advice').innerText"), "and why")
         quiet(browser, "a run that gave up")
-    for size, dark, touch, name in ((LAPTOP, False, False, "laptop"), (LAPTOP, True, False, "laptop_dark"),
-                                    (PHONE, False, True, "phone"), (PHONE, True, True, "phone_dark")):  # fmt: skip
-        with webdriver.Browser(*size, dark, touch) as browser:
-            open_page(browser, done)
-            settle(browser)
-            check_width(browser, name)
-            page = browser.run("return getComputedStyle(document.body).backgroundColor")
-            expect((page == "rgb(18, 21, 26)") == dark, f"{name}: its background is {page}")
-            if "--screenshots" in sys.argv:
-                browser.screenshot(f"{folder}/{name}_top.png")
-                browser.run("document.getElementById('surface').scrollIntoView()")
-                settle(browser)
-                browser.screenshot(f"{folder}/{name}_surface.png")
-                browser.run("document.getElementById('photographs').scrollIntoView()")
-                browser.screenshot(f"{folder}/{name}_photographs.png")
-            quiet(browser, name)
+        for dark in (False, True):
+            check_look(browser, done, folder, "laptop", dark)
+    with webdriver.Browser(*PHONE, touch=True) as browser:
+        for dark in (False, True):
+            check_look(browser, done, folder, "phone", dark)
     print(f"{checks - failures} passed, {failures} failed")
     return 1 if failures else 0
 

@@ -58,7 +58,7 @@ class Browser:
 
     ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 
-    def __init__(self, width, height, dark=False, touch=False):
+    def __init__(self, width, height, touch=False):
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
@@ -80,9 +80,6 @@ class Browser:
         self._wait_for_driver()
         answer = self._call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})
         self.session = "/session/" + answer["sessionId"]
-        if dark:
-            features = [{"name": "prefers-color-scheme", "value": "dark"}]
-            self.devtools("Emulation.setEmulatedMedia", {"features": features})
 
     def _wait_for_driver(self):
         for _ in range(200):
@@ -108,6 +105,10 @@ class Browser:
 
     def devtools(self, command, parameters):
         return self._call("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def prefer_dark(self, dark):
+        features = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
+        self.devtools("Emulation.setEmulatedMedia", {"features": features})
 
     def run(self, script, *arguments):
         """The value that the body of a JavaScript function returns."""

@@ -42,6 +42,6 @@ def sphere():
 def project(tmp_path_factory):
     """A small synthetic project with its truth."""
     folder = tmp_path_factory.mktemp("synth") / "project"
-    command = [os.environ["GLINT_PROGRAM"], "synth", "ellipsoid", "-o", folder, "--views", "20", "--size", "320x240", "-q"]
+    command = [os.environ["GLINT_PROGRAM"], "synth", "ellipsoid", "-o", folder, "--views", "12", "--size", "240x180", "-q"]
     subprocess.run(command, check=True, timeout=120)
     return Path(folder)

@@ -22,7 +22,7 @@ def project_pinhole(camera, image, points):
 
 def test_read_project(project):
     found = glint.read_project(project)
-    assert len(found.images) == 20 and len(found.cameras) == 1 and found.image_path is not None
+    assert len(found.images) == 12 and len(found.cameras) == 1 and found.image_path is not None
     points = found.points3D
     assert points.xyz.shape == (len(points), 3) and points.color.dtype == np.uint8
     assert points.track_offsets[-1] == len(points.track_image_ids) == len(points.track_point2D_idxs)
@@ -30,7 +30,7 @@ def test_read_project(project):
     errors = []
     for image in found.images.values():
         camera = found.cameras[image.camera_id]
-        assert camera.model == "PINHOLE" and (camera.width, camera.height) == (320, 240)
+        assert camera.model == "PINHOLE" and (camera.width, camera.height) == (240, 180)
         seen = image.point3D_ids >= 0
         xyz = points.xyz[[where[int(i)] for i in image.point3D_ids[seen]]]
         errors.append(np.linalg.norm(project_pinhole(camera, image, xyz) - image.points2D[seen], axis=1))
@@ -136,7 +136,7 @@ def test_find_lights(project):
     assert found and found[0].determined
     cosine = np.dot(found[0].vector, truth.vector) / np.linalg.norm(found[0].vector) / np.linalg.norm(truth.vector)
     assert np.degrees(np.arccos(min(cosine, 1))) < 5
-    assert any(e.kind == "begin" and e.total == 20 for e in events)
+    assert any(e.kind == "begin" and e.total == 12 for e in events)
 
 
 def test_run(project, tmp_path):
