@@ -32,6 +32,7 @@ std::vector<std::string> CommandFor(const BatchProject& project, const std::vect
   add("--mesh", project.mesh);
   add("--images", project.images);
   add("--masks", project.masks);
+  add("--normals", project.normals);
   for (const std::string& setting : project.settings) arguments.insert(arguments.end(), {"--set", setting});
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;

@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 9> kProjectKeys = {"project", "name",   "out",   "config", "lights",
-                                                          "mesh",    "images", "masks", "set"};
+constexpr std::array<std::string_view, 10> kProjectKeys = {"project", "name",   "out",   "config",  "lights",
+                                                           "mesh",    "images", "masks", "normals", "set"};
 
 class BatchReader {
  public:
@@ -34,7 +34,7 @@ class BatchReader {
         list = pair.second;
       else if (key == "project" || key == "name" || !Set(common, key, pair.second))
         Problem(pair.first,
-                fmt::format("unknown key \"{}\"; known here: out, config, lights, mesh, images, masks, set, "
+                fmt::format("unknown key \"{}\"; known here: out, config, lights, mesh, images, masks, normals, set, "
                             "projects",
                             key));
     }
@@ -75,7 +75,7 @@ class BatchReader {
     const std::map<std::string_view, fs::path*> paths = {{"project", &project.project}, {"out", &project.out},
                                                          {"config", &project.config},   {"lights", &project.lights},
                                                          {"mesh", &project.mesh},       {"images", &project.images},
-                                                         {"masks", &project.masks}};
+                                                         {"masks", &project.masks},     {"normals", &project.normals}};
     if (const auto path = paths.find(key); path != paths.end()) {
       if (!value.IsScalar()) Problem(value, fmt::format("{}: expected a path", key));
       *path->second = Path(value.IsScalar() ? value.Scalar() : "");

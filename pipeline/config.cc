@@ -34,6 +34,7 @@ void Config::Visit(OptionVisitor& v) {
   VisitSection(v, "detect", "Highlights in a single image.", detect);
   VisitSection(v, "lights", "Finding lights that are not given.", lights);
   VisitSection(v, "gate", "Which of them agree with the surface, a light and the other views.", gate);
+  VisitSection(v, "normals", "Normal maps of the photographs, given with --normals.", normals);
   VisitSection(v, "refine", "Specular bundle and level set in turn, coarse to fine.", refine);
   VisitSection(v, "output", "What is written, and the limits of the machine.", output);
 }

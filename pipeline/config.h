@@ -9,6 +9,7 @@
 #include "highlights/detect.h"
 #include "highlights/find_lights.h"
 #include "highlights/gate.h"
+#include "io/normal_map_files.h"
 #include "pipeline/given_mesh.h"
 #include "pipeline/photo_stage.h"
 #include "refine/refine.h"
@@ -34,6 +35,7 @@ struct Config {
   DetectOptions detect;
   FindLightsOptions lights;
   GateOptions gate;
+  NormalMapOptions normals;
   RefineOptions refine;
   OutputOptions output;
   void Visit(OptionVisitor& v);

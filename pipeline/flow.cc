@@ -76,6 +76,8 @@ void Flow::ReadProject() {
   log_.Info(fmt::format("{}: {} images, {} points", paths.model.string(), scene_.views.size(), scene_.points.size()));
   images_ = std::make_unique<ProjectImages>(scene_, paths, log_);
   summary_.num_missing_images = images_->missing().size();
+  if (!arguments_.normals.empty())
+    normals_ = std::make_unique<NormalMapFiles>(scene_, arguments_.normals, config_.normals, log_);
   LookOver(paths);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   summary_.times.push_back({"read", seconds.count(), false});
@@ -95,6 +97,7 @@ void Flow::LookOver(const ProjectPaths& paths) {
   std::string hash = stages_.hashes().Of(paths.images, images);
   if (images_->has_masks()) hash += stages_.hashes().Of(paths.masks, masks);
   stages_.Give("images", hash);
+  stages_.Give("normals", normals_ ? stages_.hashes().Of(arguments_.normals, normals_->Names()) : "");
 }
 
 void Flow::MakeSeed() {
@@ -182,7 +185,8 @@ void Flow::TakeGated() {
 
 void Flow::RefineSurface() {
   const RefineResult refined =
-      Refine({scene_, seed_, point_used_, highlights_, lights_, outline_, images_.get()}, config_.refine, log_);
+      Refine({scene_, seed_, point_used_, highlights_, lights_, outline_, images_.get(), normals_.get()},
+             config_.refine, log_);
   log_.Finish();
   for (const std::string& warning : refined.summary.warnings) log_.Warn(warning);
   TakeRefinedLights(refined);

@@ -10,6 +10,7 @@
 #include "colmap/scene.h"
 #include "geometry/triangle_mesh.h"
 #include "highlights/highlight.h"
+#include "io/normal_map_files.h"
 #include "io/project_images.h"
 #include "light/found_light.h"
 #include "pipeline/config.h"
@@ -62,6 +63,7 @@ class Flow {
   RunSummary summary_;
   Scene scene_;
   std::unique_ptr<ProjectImages> images_;
+  std::unique_ptr<NormalMapFiles> normals_;  // none: none are given
   TriangleMesh seed_;
   std::vector<OutlineSample> outline_;
   std::vector<uint8_t> point_used_;    // of scene_: lies on the object

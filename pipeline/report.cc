@@ -91,11 +91,13 @@ Json ToJson(const RefineSummary& refine) {
                {"highlights", refine.num_highlights},
                {"contacts", refine.num_contacts},
                {"points", refine.num_points},
-               {"tilts", refine.num_tilts},
+               {"shaded_patches", refine.tilts.num_shaded},
+               {"given_normals", refine.tilts.num_given_normals},
+               {"normal_map_scatter_deg", refine.tilts.normal_map_scatter_deg},
                {"converged", refine.converged},
                {"warnings", refine.warnings}};
   json["materials"] = Json::array();
-  for (const Material& material : refine.materials)
+  for (const Material& material : refine.tilts.materials)
     json["materials"].push_back({{"patches", material.num_patches},
                                  {"scatter", material.scatter},
                                  {"contrast", material.contrast},

@@ -37,9 +37,9 @@ std::vector<PlannedStage> Flow::Plan() {
                              .make = [this] { Gate(); },
                              .take = [this] { TakeGated(); }};
   PlannedStage refine = {.stage = RunStage::kRefine,
-                         .given = {"model", "images", "lights"},
+                         .given = {"model", "images", "lights", "normals"},
                          .reads = {out_.Start(), out_.PointsOnObject(), out_.Outline()},
-                         .options = {"refine"},
+                         .options = {"normals", "refine"},
                          .leaves = {out_.Mesh(), out_.LevelSetFile(), out_.Lights(), out_.Refined(), out_.Contacts()},
                          .make = [this] { RefineSurface(); },
                          .take = [this] { TakeRefined(); }};

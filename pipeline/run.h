@@ -32,11 +32,12 @@ struct StageChoice {
 struct RunArguments {
   std::filesystem::path project;
   std::filesystem::path out;
-  std::filesystem::path images;  // empty: found in the project
-  std::filesystem::path masks;   // empty: found in the project, or none
-  std::filesystem::path lights;  // empty: unknown
-  std::filesystem::path config;  // where the configuration came from, if from a file
-  std::filesystem::path mesh;    // empty: the seed is made from the sparse points
+  std::filesystem::path images;   // empty: found in the project
+  std::filesystem::path masks;    // empty: found in the project, or none
+  std::filesystem::path lights;   // empty: unknown
+  std::filesystem::path config;   // where the configuration came from, if from a file
+  std::filesystem::path mesh;     // empty: the seed is made from the sparse points
+  std::filesystem::path normals;  // empty: no normal maps
   StageChoice stages;
   std::string command;  // as typed, for the report
 };

@@ -100,7 +100,9 @@ void DeclareProjectOptions(CLI::App& command, Arguments& arguments) {
         command.add_option("--lights", run.lights, "JSON file with the lights"),
         command.add_option("--mesh", run.mesh, "Start from this mesh, in the project's frame, not from the points"),
         command.add_option("--images", run.images, "Folder of the images, if not in the project"),
-        command.add_option("--masks", run.masks, "Folder of masks (IMAGE.png, 0 is ignored), if not in the project")})
+        command.add_option("--masks", run.masks, "Folder of masks (IMAGE.png, 0 is ignored), if not in the project"),
+        command.add_option("--normals", run.normals,
+                           "Folder of normal maps of the photographs (IMAGE.png, or COLMAP's)")})
     option->excludes(batch);
   command
       .add_option_function<std::string>(

@@ -73,6 +73,7 @@ def run(
     mesh: Union[None, PathLike, MeshLike] = None,
     images: Optional[PathLike] = None,
     masks: Optional[PathLike] = None,
+    normals: Optional[PathLike] = None,
     from_stage: str = "",
     until: str = "",
     progress: Optional[Callable[[Event], None]] = None,
@@ -88,6 +89,7 @@ def run(
         mesh: start from this mesh in the project's frame, not from the sparse points.
         images: folder of the images, if not in the project.
         masks: folder of masks, if not in the project.
+        normals: folder of normal maps of the photographs, IMAGE.png or COLMAP's.
         from_stage: do this stage ("photos", "seed", "detect", "lights", "gate", "refine",
             "report") and those after it in any case;
             without it, only what is not done yet.
@@ -111,7 +113,7 @@ def run(
             write_mesh(Path(folder) / "mesh.ply", mesh)
             mesh = Path(folder) / "mesh.ply"
         given = {"project": project, "out": out, "config": config_file, "lights": lights, "mesh": mesh}
-        given.update(images=images, masks=masks)
+        given.update(images=images, masks=masks, normals=normals)
         paths = {name: os.fspath(path or "") for name, path in given.items()}
         outcome = _glint.run(paths, settings(config), from_stage, until, teller(progress))
     return RunResult(out, outcome)

@@ -60,6 +60,7 @@ std::string RunProject(const py::dict& paths, const std::vector<std::string>& se
   arguments.mesh = path("mesh");
   arguments.images = path("images");
   arguments.masks = path("masks");
+  arguments.normals = path("normals");
   arguments.stages = {StageNamed(from), StageNamed(until)};
   arguments.command = "glint.run";
   const Config config = ConfigFrom(arguments.config, settings);

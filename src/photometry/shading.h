@@ -10,17 +10,9 @@
 #include "geometry/triangle_mesh.h"
 #include "light/light.h"
 #include "photometry/surface_patches.h"
+#include "photometry/tilt.h"
 
 namespace glint {
-
-// The normal's component along a direction, at a place. World units.
-struct Tilt {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit
-  double cosine = 0;                                    // normal · direction
-  double sigma = 0;                                     // of the cosine
-  double radius_world = 0;                              // of the patch over which it is a mean
-};
 
 // What is matte and of one colour.
 struct Material {
@@ -35,7 +27,7 @@ struct Shading {
   std::vector<Material> materials;
 };
 
-// Patches are sorted by chromaticity into materials. In each, brightness is fitted as
+// Patches (with their looks) are sorted by chromaticity into materials. In each, brightness is fitted as
 //   b = a₀ + g·n + Σ eₗ (irradiance of light l)·n,
 // a₀ and g being the light of the surroundings to first order, with the surface's own normals n, which are right on
 // average; what does not fit (marks, prints, what a shadow's edge passes) is given little weight. Solved for the

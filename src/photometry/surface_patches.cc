@@ -14,7 +14,7 @@ namespace {
 constexpr double kRadians = M_PI / 180;
 // Flatter than this a view says little, and the gloss takes much of the light.
 const double kMinCosine = std::cos(60 * kRadians);
-constexpr size_t kMaxViews = 24;  // looked for
+constexpr size_t kMaxViews = 24;
 constexpr size_t kMaxLooks = 12;  // taken of these
 // Half vector to normal: further away a lobe of common gloss has faded, even where the normal is that of a seed.
 const double kMirrorCosine = std::cos(20 * kRadians);
@@ -42,8 +42,7 @@ bool Mirrors(const View& view, const std::vector<Light>& lights, const SurfacePa
 
 }  // namespace
 
-std::vector<SurfacePatch> LookAtSurface(const TriangleMesh& surface, const Scene& scene, const ViewColors& colors,
-                                        const std::vector<Light>& lights, double spacing_world) {
+std::vector<SurfacePatch> SpreadPatches(const TriangleMesh& surface, const Scene& scene, double spacing_world) {
   GLINT_CHECK_EQ(surface.normals.size(), surface.vertices.size());
   const SurfaceViews views(surface, scene);
   const std::vector<size_t> chosen = OneACell(surface.vertices, spacing_world);
@@ -54,16 +53,27 @@ std::vector<SurfacePatch> LookAtSurface(const TriangleMesh& surface, const Scene
     patch.normal = surface.normals[chosen[i]].normalized();
     patch.radius_world = 0.5 * spacing_world;
     for (const SeenBy& seen : views.Squarest(patch.position, patch.normal, kMinCosine, kMaxViews)) {
-      if (patch.looks.size() >= kMaxLooks) break;
       const View& view = scene.views[seen.view];
-      if (Mirrors(view, lights, patch)) continue;
-      const double depth = (view.cam_from_world * patch.position).z();
-      const double radius_px = patch.radius_world * MeanFocalLength(view.camera) / std::max(depth, 1e-12);
-      if (const auto rgb = colors.Mean(seen.view, seen.px.cast<double>(), radius_px))
-        patch.looks.push_back({seen.view, *rgb});
+      const double depth = std::max((view.cam_from_world * patch.position).z(), 1e-12);
+      patch.views.push_back(
+          {seen.view, seen.px, static_cast<float>(patch.radius_world * MeanFocalLength(view.camera) / depth)});
     }
   });
   return patches;
+}
+
+void TakeLooks(const Scene& scene, const ViewColors& colors, const std::vector<Light>& lights,
+               std::vector<SurfacePatch>& patches) {
+  ParallelFor(patches.size(), 64, [&](size_t i) {
+    SurfacePatch& patch = patches[i];
+    patch.looks.clear();
+    for (const PatchView& seen : patch.views) {
+      if (patch.looks.size() >= kMaxLooks) break;
+      if (Mirrors(scene.views[seen.view], lights, patch)) continue;
+      if (const auto rgb = colors.Mean(seen.view, seen.px.cast<double>(), seen.radius_px))
+        patch.looks.push_back({seen.view, *rgb});
+    }
+  });
 }
 
 }  // namespace glint

@@ -12,6 +12,13 @@
 
 namespace glint {
 
+// Where a patch is in a photograph.
+struct PatchView {
+  uint32_t view;
+  Eigen::Vector2f px;
+  float radius_px;
+};
+
 struct PatchLook {
   uint32_t view;
   Eigen::Array3d rgb;  // linear, the mean over the patch, 1 = sensor white
@@ -20,12 +27,16 @@ struct PatchLook {
 struct SurfacePatch {
   Eigen::Vector3d position, normal;  // world; on the surface, outward
   double radius_world = 0;
+  std::vector<PatchView> views;  // that see it, the squarest first, at most 24 and none beyond 60 degrees
   std::vector<PatchLook> looks;
 };
 
-// One patch in every cell of a grid through which the surface passes; as wide as the cells. The mesh has normals. Looks
-// are the squarest of those in which no light is mirrored anywhere near the patch: its gloss is dark there.
-std::vector<SurfacePatch> LookAtSurface(const TriangleMesh& surface, const Scene& scene, const ViewColors& colors,
-                                        const std::vector<Light>& lights, double spacing_world);
+// One patch in every cell of a grid through which the surface passes; as wide as the cells. The mesh has normals.
+// Without looks.
+std::vector<SurfacePatch> SpreadPatches(const TriangleMesh& surface, const Scene& scene, double spacing_world);
+
+// Takes the squarest of those looks in which no light is mirrored anywhere near the patch: its gloss is dark there.
+void TakeLooks(const Scene& scene, const ViewColors& colors, const std::vector<Light>& lights,
+               std::vector<SurfacePatch>& patches);
 
 }  // namespace glint

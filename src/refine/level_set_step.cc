@@ -44,14 +44,6 @@ void LevelSetOptions::Visit(OptionVisitor& v) {
            .min = 0,
            .max = 1e4},
           outline_weight);
-  v.Field({.name = "shading_weight", .help = "weight of the normals from shading; 0: not used", .min = 0, .max = 1e4},
-          shading_weight);
-  v.Field({.name = "shading_length_rel",
-           .help = "distance over which the errors of shading are alike",
-           .unit = "fraction of the diagonal",
-           .min = 1e-3,
-           .max = 1},
-          shading_length_rel);
   v.Field({.name = "reweightings", .help = "solves with weights of outliers lowered", .min = 1, .max = 20},
           reweightings);
   v.Field({.name = "max_iterations", .help = "of the linear solver", .min = 1, .max = 100000}, max_iterations);
@@ -127,8 +119,7 @@ SurfaceConstraints StepConstraints(const Band& band, const StepInput& input, con
   constraints.AddContacts(input.contacts, options.highlight_weight);
   constraints.AddPoints(input.points, options.point_weight);
   constraints.AddOutline(input.outline, options.outline_weight);
-  constraints.AddTilts(input.tilts, options.shading_weight,
-                       std::min(1.0, std::pow(input.tilt_spacing / options.shading_length_rel, 2)));
+  constraints.AddTilts(input.tilts);
   return constraints;
 }
 

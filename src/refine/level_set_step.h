@@ -24,8 +24,6 @@ struct LevelSetOptions {
   double point_weight = 1;
   double highlight_weight = 1;
   double outline_weight = 0.1;
-  double shading_weight = 1;
-  double shading_length_rel = 0.05;
   int reweightings = 2;
   int max_iterations = 200;
   double tolerance = 0.05;
@@ -55,8 +53,7 @@ struct StepInput {
   const std::vector<SurfacePoint>& points;
   const std::vector<OrientedPoint>& outline;  // where the surface touches rays through outlines
   inline static const std::vector<Tilt> kNoTilts = {};
-  const std::vector<Tilt>& tilts = kNoTilts;  // of the normal, from shading
-  double tilt_spacing = 0;                    // from one to the next
+  const std::vector<Tilt>& tilts = kNoTilts;  // of the normals, from shading and normal maps
 };
 
 LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options, StepSummary* summary);

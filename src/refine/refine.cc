@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -34,7 +33,6 @@ constexpr double kMaxWayVoxels = 24;  // for memory's sake
 constexpr double kConfidenceVoxelRel = 1.0 / 64;
 // Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
 constexpr double kMinPieceShare = 0.005;
-constexpr double kTiltSpacingRel = 0.01;
 
 TriangleMesh WithoutCrumbs(const TriangleMesh& mesh) {
   const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));
@@ -61,15 +59,14 @@ class Refiner {
         options_(options),
         progress_(progress),
         frame_(UnitFrame::Of(input.seed)),
-        highlights_(MakeHighlights()) {
+        highlights_(MakeHighlights()),
+        tilts_(input.scene, input.images, input.normals, options.tilts, frame_, progress) {
     seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
     seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
     surface_ = seed_;
     summary_.bends_like_seed = options.bend != "flat";
     MakePoints();
     MakeOutline();
-    if (options.use_shading && input.images && !input.lights.empty())
-      colors_ = std::make_unique<ViewColors>(*input.images, size_t(options.image_memory_mb) << 20, progress);
   }
 
   RefineResult Run() {
@@ -100,7 +97,6 @@ class Refiner {
   LevelSet Step(const LevelSet& seed_field, bool undecided, StepSummary& summary);
   void TakeSurface(const LevelSet& stepped, const SdfOptions& sdf);
   void UpdatePoints(const LevelSet& field);
-  void LookAtShading();
   void MeasureConfidence();
   void Finish(RefineResult& result);
 
@@ -116,8 +112,7 @@ class Refiner {
   std::vector<SurfacePoint> points_;
   std::vector<Eigen::Matrix3d> point_covariance_;
   std::vector<OutlineRay> outline_;
-  std::unique_ptr<ViewColors> colors_;  // none: no shading
-  std::vector<Tilt> tilts_;
+  PhotoTilts tilts_;
   RefineSummary summary_;
 };
 
@@ -170,25 +165,6 @@ void Refiner::UpdatePoints(const LevelSet& field) {
   }
 }
 
-// The surface as it is now in the photographs.
-void Refiner::LookAtShading() {
-  tilts_.clear();
-  if (!colors_) return;
-  const TriangleMesh world = frame_.ToWorld(surface_);
-  std::vector<Light> lights;
-  for (const Light& light : highlights_.lights()) lights.push_back(frame_.ToWorld(light));
-  const Shading shading =
-      TiltsFromShading(world, input_.scene, lights,
-                       LookAtSurface(world, input_.scene, *colors_, lights, kTiltSpacingRel / frame_.scale));
-  for (Tilt tilt : shading.tilts) {
-    tilt.position = frame_.FromWorld(tilt.position);
-    tilt.radius_world *= frame_.scale;
-    tilts_.push_back(tilt);
-  }
-  summary_.materials = shading.materials;
-  summary_.num_tilts = static_cast<int>(tilts_.size());
-}
-
 // A faired seed bends much as the object does, a raw mesh is rough: the first step of each level
 // tells which it is, at the roughness that its voxels resolve.
 LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& summary) {
@@ -196,11 +172,11 @@ LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& 
   const std::vector<OrientedPoint> outline = OutlineContacts(outline_, field_);
   const double area = SurfaceArea(surface_);
   if (options_.method == "flow")
-    return FlowStep({field_, seed_field, false, area, contacts, points_, outline, tilts_}, options_.flow, &summary);
+    return FlowStep({field_, seed_field, false, area, contacts, points_, outline, tilts_.tilts()}, options_.flow,
+                    &summary);
   const auto step = [&](bool bend_like_seed, StepSummary& report) {
-    return VariationalStep(
-        {field_, seed_field, bend_like_seed, area, contacts, points_, outline, tilts_, kTiltSpacingRel},
-        options_.level_set, &report);
+    return VariationalStep({field_, seed_field, bend_like_seed, area, contacts, points_, outline, tilts_.tilts()},
+                           options_.level_set, &report);
   };
   LevelSet stepped = step(summary_.bends_like_seed, summary);
   if (!undecided || !summary_.bends_like_seed || options_.bend != "auto") return stepped;
@@ -238,8 +214,7 @@ bool Refiner::RunLevel(double voxel, size_t progress_steps) {
                            options_.contacts.max_incidence_deg * kRadians, points_, options_.bundle, iteration.bundle) /
         voxel;
     iteration.contacts_on_surface = highlights_.num_on_surface();
-    // The seed's normals are no measure for brightness; highlights and points mend them first.
-    if (!summary_.iterations.empty()) LookAtShading();
+    tilts_.LookAgain(surface_, highlights_.lights(), !summary_.iterations.empty());
     const LevelSet stepped = Step(seed_field, k == 0, iteration.step);
     TakeSurface(stepped, sdf);
     iteration.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -269,8 +244,8 @@ void Refiner::MeasureConfidence() {
   const LevelSet seed_field = SeedField(voxel, options_.half_width_voxels + 1);
   const LevelSet field = Resample(field_, voxel, options_.half_width_voxels + 1);
   const std::vector<OrientedPoint> contacts = highlights_.Oriented(), outline = OutlineContacts(outline_, field);
-  const StepInput input{field,   seed_field, summary_.bends_like_seed, SurfaceArea(surface_), contacts, points_,
-                        outline, tilts_,     kTiltSpacingRel};
+  const StepInput input{field,   seed_field,    summary_.bends_like_seed, SurfaceArea(surface_), contacts, points_,
+                        outline, tilts_.tilts()};
   AddConfidence(PosteriorDeviation(input, options_.level_set, surface_.vertices), surface_);
 }
 
@@ -297,6 +272,7 @@ void Refiner::Finish(RefineResult& result) {
   if (!summary_.converged)
     summary_.warnings.push_back(
         fmt::format("the contacts still moved after {} iterations at the finest level", options_.max_iterations));
+  summary_.tilts = tilts_.summary();
   result.summary = summary_;
 }
 

@@ -12,10 +12,12 @@
 #include "geometry/triangle_mesh.h"
 #include "highlights/highlight.h"
 #include "io/image_source.h"
+#include "io/normal_source.h"
 #include "light/light.h"
 #include "refine/bundle.h"
 #include "refine/flow_step.h"
 #include "refine/level_set_step.h"
+#include "refine/photo_tilts.h"
 #include "sdf/level_set.h"
 #include "silhouette/outline.h"
 
@@ -31,13 +33,12 @@ struct RefineOptions {
   bool use_highlights = true;
   bool use_lobes = true;
   bool use_outlines = false;
-  bool use_shading = true;
-  int image_memory_mb = 512;
   std::string method = "variational";  // or "flow"
   std::string bend = "auto";           // "seed", "flat", "auto": what the evidence is for
   std::string lights = "auto";         // "fixed", "solve", "auto": solve those with a standard deviation
   ContactOptions contacts;
   BundleOptions bundle;
+  TiltOptions tilts;
   LevelSetOptions level_set;
   FlowOptions flow;
   void Visit(OptionVisitor& v);
@@ -51,7 +52,8 @@ struct RefineInput {
   std::vector<Highlight> highlights;
   std::vector<Light> lights;
   std::vector<OutlineSample> outline = {};
-  const ImageSource* images = nullptr;  // for shading; none: no shading
+  const ImageSource* images = nullptr;    // for shading; none: no shading
+  const NormalSource* normals = nullptr;  // none: no normal maps
 };
 
 struct IterationSummary {
@@ -69,8 +71,7 @@ struct RefineSummary {
   int num_highlights = 0;
   int num_contacts = 0;
   int num_points = 0;
-  int num_tilts = 0;                // patches whose shading says something of their normal
-  std::vector<Material> materials;  // of the last look at the surface
+  TiltSummary tilts;
   bool converged = false;
   std::vector<std::string> warnings;
 };

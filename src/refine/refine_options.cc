@@ -31,13 +31,6 @@ void RefineOptions::Visit(OptionVisitor& v) {
   v.Field({.name = "use_outlines",
            .help = "the surface touches the rays through the object's outlines, too: for accurate masks"},
           use_outlines);
-  v.Field({.name = "use_shading", .help = "the shading of the matte base under known lights, too"}, use_shading);
-  v.Field({.name = "image_memory_mb",
-           .help = "for small copies of the photographs",
-           .unit = "MB",
-           .min = 16,
-           .max = 1 << 20},
-          image_memory_mb);
   v.Field({.name = "method",
            .help = "of a step: variational: the least energy at once; flow: the papers' partial differential equation",
            .choices = {"variational", "flow"}},
@@ -54,6 +47,7 @@ void RefineOptions::Visit(OptionVisitor& v) {
           lights);
   VisitSection(v, "contacts", "highlights as oriented rays", contacts);
   VisitSection(v, "bundle", "the specular bundle", bundle);
+  VisitSection(v, "tilts", "normals from shading and from normal maps", tilts);
   VisitSection(v, "level_set", "the energy of the level set", level_set);
   VisitSection(v, "flow", "the other method", flow);
 }

@@ -121,8 +121,7 @@ void SurfaceConstraints::AddOutline(const std::vector<OrientedPoint>& touched, d
 }
 
 // A unit normal can only turn: what a tilt says along the normal as it is now would stretch the field instead.
-void SurfaceConstraints::AddTilts(const std::vector<Tilt>& tilts, double weight, double share) {
-  if (weight == 0) return;
+void SurfaceConstraints::AddTilts(const std::vector<Tilt>& tilts) {
   for (const Tilt& tilt : tilts) {
     const double footprint = std::max(0.5 * tilt.radius_world / band_.voxel_size(), kLeastFootprintVoxels);
     const std::vector<Tap> mean = GaussianTaps(band_, tilt.position, footprint);
@@ -138,8 +137,8 @@ void SurfaceConstraints::AddTilts(const std::vector<Tilt>& tilts, double weight,
         rows_.Push(band_.Neighbor(tap.voxel, axis, 0), -c);
       }
     const double sigma = tilt.sigma / lever;
-    rows_.Close((tilt.cosine - normal.dot(tilt.direction)) / lever, weight * share / (sigma * sigma));
-    EndGroup(first, true, -1, share);
+    rows_.Close((tilt.cosine - normal.dot(tilt.direction)) / lever, tilt.share / (sigma * sigma));
+    EndGroup(first, true, -1, tilt.share);
   }
 }
 

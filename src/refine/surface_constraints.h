@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "photometry/shading.h"
+#include "photometry/tilt.h"
 #include "refine/band.h"
 #include "refine/band_rows.h"
 #include "refine/bundle.h"
@@ -34,8 +34,8 @@ class SurfaceConstraints {
   void AddContacts(const std::vector<OrientedPoint>& contacts, double weight);
   void AddPoints(const std::vector<SurfacePoint>& points, double weight);
   void AddOutline(const std::vector<OrientedPoint>& touched, double weight);
-  // `share`: of one in the weight, because its neighbours err alike; as outliers they are judged one by one.
-  void AddTilts(const std::vector<Tilt>& tilts, double weight, double share);
+  // Their shares lower the weight, but as outliers they are judged one by one.
+  void AddTilts(const std::vector<Tilt>& tilts);
 
   // With the full weight each.
   const BandRows& rows() const { return rows_; }

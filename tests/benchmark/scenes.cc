@@ -9,15 +9,19 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <opencv2/core.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "colmap/project.h"
 #include "colmap/scene.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "geometry/closest_point.h"
 #include "geometry/ray_caster.h"
 #include "io/mesh_io.h"
+#include "io/project_images.h"
 #include "light/light_io.h"
 #include "metrics/compare.h"
 #include "metrics/swept_region.h"
@@ -44,8 +48,9 @@ constexpr double kNearRel = 0.02;
 struct Plan {
   fs::path out = "build/measured";
   bool unknown = false;
-  bool without = true;  // also with the highlights switched off
-  std::string from;     // empty: the first stage that is not done yet
+  bool without = true;          // also with the highlights switched off
+  std::string from;             // empty: the first stage that is not done yet
+  double normal_maps_deg = -1;  // with normal maps of the truth that are so far off; negative: without
   std::vector<std::string> settings;
 };
 
@@ -150,9 +155,38 @@ double Seconds(const RunSummary& run) {
   return sum;
 }
 
+// Maps as a network makes them: right in detail, each turned and bent in its own way.
+void WriteNormalMaps(const Scene& scene, const TriangleMesh& truth, double off_deg, uint64_t seed,
+                     const fs::path& folder) {
+  const RayCaster caster(truth);
+  for (size_t v = 0; v < scene.views.size(); ++v) {
+    const View& view = scene.views[v];
+    std::mt19937_64 random(seed * 1000 + v);
+    std::normal_distribution<double> error(0, off_deg * M_PI / 180 / std::sqrt(2.0));
+    const Eigen::Vector3d turn(error(random), error(random), error(random));
+    const Eigen::Vector3d bend(error(random), error(random), error(random));
+    const auto width = static_cast<int>(view.camera.width) / 2, height = static_cast<int>(view.camera.height) / 2;
+    cv::Mat map(height, width, CV_8UC3, cv::Scalar::all(0));
+    ParallelFor(height, 4, [&](size_t row) {
+      const auto y = static_cast<int>(row);
+      for (int x = 0; x < width; ++x) {
+        const auto ray = view.RayThrough({2 * x + 1.0, 2 * y + 1.0});
+        const auto hit = ray ? caster.Intersect(view.Center(), *ray) : std::nullopt;
+        if (!hit) continue;
+        const double wave = std::sin(6.0 * x / width + 4.0 * y / height + static_cast<double>(v));
+        const Eigen::Vector3d n = (InterpolatedNormal(truth, *hit) + turn + wave * bend).normalized();
+        const Eigen::Vector3d in_camera = view.cam_from_world.rotation * n;
+        const auto code = [](double c) { return static_cast<uchar>(std::lround(127.5 * (1 + c))); };
+        map.at<cv::Vec3b>(y, x) = {code(-in_camera.z()), code(-in_camera.y()), code(in_camera.x())};
+      }
+    });
+    WriteImagePng(folder / (view.name + ".png"), map);
+  }
+}
+
 struct Case {
   std::string name;
-  fs::path project, lights, out;
+  fs::path project, lights, normals, out;
   const TriangleMesh& truth;
   std::vector<uint8_t> region, rest, seen;  // where highlights pass, elsewhere, and what of that a camera sees
   Eigen::Affine3d truth_from_project = Eigen::Affine3d::Identity();
@@ -168,6 +202,7 @@ void MeasureCase(const Case& c, const Plan& plan) {
     arguments.project = c.project;
     arguments.lights = c.lights;
     arguments.out = out;
+    arguments.normals = c.normals;
     if (!plan.from.empty()) {
       const auto from = std::find(kRunStageNames.begin(), kRunStageNames.end(), plan.from);
       arguments.stages.from = static_cast<RunStage>(from - kRunStageNames.begin());
@@ -218,8 +253,14 @@ void MeasureSynthetic(const SyntheticOptions& options, const Plan& plan) {
   const std::vector<uint16_t> views = VisibleViews(truth, scene);
   std::vector<uint8_t> seen = rest;
   for (size_t v = 0; v < seen.size(); ++v) seen[v] = seen[v] && views[v] > 0;
-  MeasureCase({name, project, plan.unknown ? fs::path() : project / "truth" / "lights.json", project / "glint", truth,
-               std::move(region), rest, seen},
+  fs::path normals;
+  if (plan.normal_maps_deg >= 0) {
+    normals = project / "normals";
+    fs::create_directories(normals);
+    WriteNormalMaps(scene, truth, plan.normal_maps_deg, options.seed, normals);
+  }
+  MeasureCase({name, project, plan.unknown ? fs::path() : project / "truth" / "lights.json", normals, project / "glint",
+               truth, std::move(region), rest, seen},
               plan);
 }
 
@@ -238,8 +279,16 @@ void MeasureVase(const fs::path& vase, const Plan& plan) {
   Transform(similarity, colmap);
   EnsureNormals(colmap);
   PrintRow("vase", "COLMAP", Measure(colmap, truth, region, rest, rest), 0);
-  MeasureCase({"vase", vase / "project", plan.unknown ? fs::path() : vase / "lights.json", plan.out / "vase", truth,
-               region, rest, rest, similarity},
+  MeasureCase({"vase",
+               vase / "project",
+               plan.unknown ? fs::path() : vase / "lights.json",
+               {},
+               plan.out / "vase",
+               truth,
+               region,
+               rest,
+               rest,
+               similarity},
               plan);
 }
 
@@ -262,6 +311,7 @@ int Main(int argc, char** argv) {
   app.add_option("--base", options.base, "base colour");
   app.add_flag("--unknown", plan.unknown, "do not give the lights");
   app.add_flag("!--no-without", plan.without, "leave out the run without highlights");
+  app.add_option("--normal-maps", plan.normal_maps_deg, "with normal maps, so many degrees off");
   app.add_option("--from", plan.from, "go on from this stage of an earlier call")
       ->check(CLI::IsMember(std::vector<std::string>(kRunStageNames.begin(), kRunStageNames.end())));
   app.add_option("--set", plan.settings, "change one option: section.option=value")->allow_extra_args(false);

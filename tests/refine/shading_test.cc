@@ -47,10 +47,10 @@ TEST(RefineByShading, FlattensWavesThatNoHighlightTouches) {
   std::vector<uint8_t> lit(truth.vertices.size());
   for (size_t v = 0; v < lit.size(); ++v) lit[v] = seen[v] > 0 && truth.normals[v].dot(scene.lights[0].vector) > 0.2;
   const auto error_deg = [&](bool use_shading) {
-    options.use_shading = use_shading;
+    options.tilts.use_shading = use_shading;
     const RefineResult result = Refine(input, options);
-    EXPECT_EQ(result.summary.num_tilts > 500, use_shading);
-    EXPECT_EQ(result.summary.materials.empty(), !use_shading);
+    EXPECT_EQ(result.summary.tilts.num_shaded > 500, use_shading);
+    EXPECT_EQ(result.summary.tilts.materials.empty(), !use_shading);
     return NormalStats(CompareMeshes(result.mesh, truth), lit).mean;
   };
   const double with = error_deg(true), without = error_deg(false);
