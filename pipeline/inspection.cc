@@ -98,7 +98,7 @@ Inspection InspectProject(const InspectArguments& arguments, Progress& progress)
       verdict.problems.push_back(e.what());
     }
   }
-  verdict.hints.push_back("the lights are needed too: --lights FILE");
+  verdict.hints.push_back("the lights are found from the highlights, unless they are given with --lights FILE");
   return verdict.Conclude(text, "glint run");
 }
 
