@@ -16,6 +16,9 @@ function ticks(low, high, log) {
   return out;
 }
 
+// 1,000,000 would stick out to the left.
+const tickLabel = (t) => (t < 1e5 ? number(t, 3) : new Intl.NumberFormat('en', { notation: 'compact' }).format(t));
+
 function range(values, log) {
   let low = Math.min(...values), high = Math.max(...values);
   if (log) return [10 ** Math.floor(Math.log10(low)), 10 ** Math.ceil(Math.log10(high) + 1e-9)];
@@ -36,7 +39,7 @@ export function plot({ title, unit, series, log = false, limit }) {
   const chart = svg('svg', { viewBox: `0 0 ${kWidth} ${kHeight}`, role: 'img', 'aria-label': `${title}: ${series.map((s) => `${s.name} from ${number(s.values[0])} to ${number(s.values.at(-1))}`).join(', ')}` });
   for (const t of ticks(low, high, useLog))
     chart.append(svg('line', { class: 'grid', x1: kLeft, x2: kWidth - kRight, y1: y(t), y2: y(t) }),
-      svg('text', { class: 'tick', x: kLeft - 6, y: y(t) + 4, 'text-anchor': 'end' }, number(t, 3)));
+      svg('text', { class: 'tick', x: kLeft - 6, y: y(t) + 4, 'text-anchor': 'end' }, tickLabel(t)));
   const every = Math.ceil(n / 8);
   for (let i = 0; i < n; i += every) chart.append(svg('text', { class: 'tick', x: x(i), y: kHeight - kBottom + 16, 'text-anchor': 'middle' }, String(i + 1)));
   chart.append(svg('text', { class: 'tick', x: (kLeft + kWidth - kRight) / 2, y: kHeight - 4, 'text-anchor': 'middle' }, 'iteration'));

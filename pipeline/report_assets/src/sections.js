@@ -57,7 +57,7 @@ export function buildLights(data) {
       `${light.type}, ${kFrames[light.frame]}`,
       el('code', {}, vector.map((x) => number(x, 4)).join('  ')),
       light.determined ? uncertainty(light, data.report.seed.diagonal_world) : 'not determined',
-      number(light.support, 3),
+      number(Math.round(light.support), 3),
       moved,
       lights.given.length ? 'given' : light.determined ? 'found' : `not used: ${light.why}`,
     ];
