@@ -112,3 +112,33 @@ def specular_bundle():
         canvas.text([left + 215, 22], title, INK, 15, "mm")
     canvas.text([430, 310], f"thin: the truth. Two places are known; the largest error of the others is {100 * error:.1f} % of the radius.", INK, 13, "mm")
     return canvas.finished()
+
+
+def shading():
+    """A matte ball in one light, lines of equal brightness on it, and what one brightness says of a normal."""
+    radius, size = 150, 380
+    center = np.array([190.0, 190.0])
+    light = np.array([-0.5, 0.55, 0.67])
+    light /= np.linalg.norm(light)
+    x, y = np.meshgrid((np.arange(size) + 0.5 - center[0]) / radius, (center[1] - np.arange(size) - 0.5) / radius)
+    inside = x * x + y * y < 1
+    z = np.sqrt(np.clip(1 - x * x - y * y, 0, 1))
+    cosine = np.clip(x * light[0] + y * light[1] + z * light[2], 0, 1)
+    line = np.abs((cosine * 8 + 0.5) % 1 - 0.5) < 0.035
+    grey = np.where(line & (cosine > 0.05), 250, 40 + 175 * cosine)
+    ball = np.where(inside[..., None], grey[..., None] * np.array([1.0, 0.62, 0.45]), 255).astype(np.uint8)
+    canvas = Canvas(720, 380)
+    canvas.paste(Image.fromarray(ball), (0, 0))
+    canvas.arrow(center + [-95, -105], center + [-160, -175], RED)
+    canvas.text(center + [-160, -182], "l", RED, 18, "mm")
+    foot, axis = np.array([540.0, 260.0]), np.array([-0.45, -0.893])
+    for turn in np.linspace(0, 2 * np.pi, 24, endpoint=False):
+        side = np.array([-axis[1], axis[0]]) * 62 * np.cos(turn) + axis * 14 * np.sin(turn)
+        canvas.line([foot, foot + axis * 120 + side], GREEN if abs(turn - np.pi) < 0.2 else (150, 200, 170), 1.5)
+    canvas.arrow(foot, foot + axis * 165, RED, 2.5)
+    canvas.text(foot + axis * 180, "l", RED, 18, "mm")
+    canvas.dot(foot, 5, ORANGE)
+    canvas.text([540, 300], "b = a0 + e n.l: of the normal", INK, 15, "mm")
+    canvas.text([540, 322], "one component, not the other", INK, 15, "mm")
+    canvas.text([190, 360], "lines of equal brightness are lines of equal n.l", INK, 15, "mm")
+    return canvas.finished()

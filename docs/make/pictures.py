@@ -154,6 +154,7 @@ def main():
     save(diagrams.signed_distance(), out / "signed_distance.png", 64)
     save(diagrams.highlight(), out / "highlight.png", 64)
     save(diagrams.specular_bundle(), out / "specular_bundle.png", 64)
+    save(diagrams.shading(), out / "shading.png", 64)
     project, result = reconstruction(program, work)
     save(photographs(project, result), out / "photographs.png", 256)
     save(before_after(program, project, result, work), out / "before_after.png", 256)
