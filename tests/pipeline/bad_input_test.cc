@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "colmap/model.h"
-#include "tests/pipeline/program.h"
-#include "tests/support/shared_folder.h"
+#include "tests/pipeline/spoilt_project.h"
 
 namespace glint {
 namespace {
@@ -17,26 +15,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// A small project, rendered once, which every test spoils in its own way.
-class BadInput : public ProgramTest {
+class BadInput : public SpoiltProject {
  protected:
-  static void SetUpTestSuite() { sound_ = testing_support::SharedFolder("bad_input_test", Make); }
-  static void Make(const fs::path& folder) {
-    const ProgramResult result =
-        RunGlint({"synth", "sphere", "-o", folder.string(), "--views", "8", "--size", "160x120", "-q"});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-  }
-  BadInput() { fs::copy(sound_, folder_ / "p", fs::copy_options::recursive); }
-
-  fs::path ModelFolder() const { return folder_ / "p/sparse/0"; }
-
-  template <class Change>
-  void ChangeModel(const Change& change) const {
-    Model model = ReadModel(ModelFolder());
-    change(model);
-    WriteModel(model, ModelFolder());
-  }
-
   ProgramResult Run(std::vector<std::string> more = {}, const std::string& prefix = "") const {
     std::vector<std::string> arguments = {"run", Path("p"), "-o", Path("out")};
     if (std::find(more.begin(), more.end(), "--lights") == more.end()) {
@@ -59,8 +39,6 @@ class BadInput : public ProgramTest {
     EXPECT_THAT(result.err, Not(HasSubstr("bug")));
     ExpectNoResults(folder_ / "out");
   }
-
-  static inline fs::path sound_;
 };
 
 TEST_F(BadInput, MissingProject) {
@@ -124,8 +102,7 @@ TEST_F(BadInput, ImageSizeThatDisagreesWithTheCamera) {
 TEST_F(BadInput, NumbersThatAreNotFinite) {
   ChangeModel([](Model& model) { model.images[3].cam_from_world.translation.y() = std::nan(""); });
   ExpectRefused(AllOf(HasSubstr("images.bin"), HasSubstr("image 4 of 8")));
-  fs::remove_all(folder_ / "p");
-  fs::copy(sound_, folder_ / "p", fs::copy_options::recursive);
+  Restore();
   uint64_t id = 0;
   ChangeModel([&](Model& model) {
     id = model.points[7].id;

@@ -5,9 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "colmap/model.h"
-#include "tests/pipeline/program.h"
-#include "tests/support/shared_folder.h"
+#include "tests/pipeline/spoilt_project.h"
 
 namespace glint {
 namespace {
@@ -17,29 +15,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class WildModel : public ProgramTest {
+class WildModel : public SpoiltProject {
  protected:
-  static void SetUpTestSuite() { sound_ = testing_support::SharedFolder("bad_models_test", Make); }
-  static void Make(const fs::path& folder) {
-    const ProgramResult result =
-        RunGlint({"synth", "sphere", "-o", folder.string(), "--views", "6", "--size", "160x120", "-q"});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-  }
-  WildModel() { Restore(); }
-
-  void Restore() const {
-    fs::remove_all(folder_ / "p");
-    fs::copy(sound_, folder_ / "p", fs::copy_options::recursive);
-  }
-
-  template <class Change>
-  void ChangeModel(const Change& change) const {
-    Restore();
-    Model model = ReadModel(folder_ / "p/sparse/0");
-    change(model);
-    WriteModel(model, folder_ / "p/sparse/0");
-  }
-
   // Reads model and images, and looks for highlights in them.
   ProgramResult Detect(const std::string& out = "masks") const {
     return RunGlint({"detect", Path("p"), "-o", Path(out)});
@@ -56,8 +33,6 @@ class WildModel : public ProgramTest {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.err, AllOf(HasSubstr("warning"), message));
   }
-
-  static inline fs::path sound_;
 };
 
 fs::path Real(const std::string& name) { return fs::path(GLINT_SOURCE_DIR) / "../shared/data/real" / name; }
@@ -89,6 +64,7 @@ TEST_F(WildModel, QuaternionNotOfUnitLengthAndPixelsAtZero) {
 TEST_F(WildModel, TracksThatReferToWhatIsNotThere) {
   ChangeModel([](Model& model) { model.points[4].track[0].image_id = 999; });
   ExpectWarning(HasSubstr("999"));
+  Restore();
   ChangeModel([](Model& model) { model.images[1].points2d[0].point3d_id = 987654; });
   ExpectWarning(HasSubstr("987654"));
 }
@@ -96,6 +72,7 @@ TEST_F(WildModel, TracksThatReferToWhatIsNotThere) {
 TEST_F(WildModel, IdsThatComeTwice) {
   ChangeModel([](Model& model) { model.images[3].id = model.images[2].id; });
   ExpectRefused(AllOf(HasSubstr("images.bin"), HasSubstr("found it twice")));
+  Restore();
   ChangeModel([](Model& model) { model.points[3].id = model.points[2].id; });
   ExpectRefused(AllOf(HasSubstr("points3D.bin"), HasSubstr("found it twice")));
 }
