@@ -189,6 +189,7 @@ void Flow::RefineSurface() {
              config_.refine, log_);
   log_.Finish();
   for (const std::string& warning : refined.summary.warnings) log_.Warn(warning);
+  if (const std::string said = refined.summary.tilts.BriefReport(); !said.empty()) Note(said);
   TakeRefinedLights(refined);
   summary_.refine = refined.summary;
   summary_.num_vertices = refined.mesh.vertices.size();

@@ -1,5 +1,7 @@
 #include "refine/photo_tilts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +28,18 @@ void TiltOptions::Visit(OptionVisitor& v) {
            .min = 16,
            .max = 1 << 20},
           image_memory_mb);
+}
+
+std::string TiltSummary::BriefReport() const {
+  std::string said;
+  const auto used = std::count_if(materials.begin(), materials.end(), [](const Material& m) { return m.used; });
+  if (!materials.empty())
+    said = fmt::format("shading says something of the normals of {} patches; it follows them in {} of {} materials",
+                       num_shaded, used, materials.size());
+  if (num_given_normals > 0)
+    said += fmt::format("{}normal maps show {} patches, single maps scatter by {:.1f} deg", said.empty() ? "" : "; ",
+                        num_given_normals, normal_map_scatter_deg);
+  return said;
 }
 
 PhotoTilts::PhotoTilts(const Scene& scene, const ImageSource* images, const NormalSource* normals,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "colmap/scene.h"
@@ -32,6 +33,8 @@ struct TiltSummary {
   int num_shaded = 0;                 // patches whose shading says something of their normal
   int num_given_normals = 0;          // patches that normal maps show
   double normal_map_scatter_deg = 0;  // what single maps are off by
+
+  std::string BriefReport() const;  // a sentence; empty if there was neither
 };
 
 class PhotoTilts {
