@@ -3,6 +3,7 @@
 //   balls FOLDER
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -176,8 +177,15 @@ void MeasurePsbox(const fs::path& folder) {
 }  // namespace glint
 
 int main(int argc, char** argv) {
-  if (argc != 2) return fmt::print("balls FOLDER\n"), 2;
-  glint::MeasureUw(glint::fs::path(argv[1]) / "uw");
-  glint::MeasurePsbox(glint::fs::path(argv[1]) / "psbox" / "data");
+  CLI::App app("Photographs of balls with reference directions: how far the lights are off");
+  glint::fs::path folder;
+  app.add_option("folder", folder, "with uw/ and psbox/data/")->required()->check(CLI::ExistingDirectory);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    glint::MeasureUw(folder / "uw");
+    glint::MeasurePsbox(folder / "psbox" / "data");
+  } catch (const glint::Error& error) {
+    return fmt::print(stderr, "{}\n", error.what()), 2;
+  }
   return 0;
 }
