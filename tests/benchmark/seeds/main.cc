@@ -31,6 +31,7 @@
 #include "metrics/swept_region.h"
 #include "pipeline/comparison.h"
 #include "pipeline/picture.h"
+#include "pipeline/similarity.h"
 #include "seed/build_seed.h"
 #include "synthetic/synthesize.h"
 #include "tests/benchmark/seeds/poisson_peer.h"
