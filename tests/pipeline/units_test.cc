@@ -1,6 +1,7 @@
 // COLMAP's unit and origin are arbitrary: the whole run, from files to files, gives the same surface in any of them.
-#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <algorithm>
 
 #include "colmap/model.h"
 #include "io/mesh_io.h"
@@ -15,54 +16,94 @@ namespace fs = std::filesystem;
 struct Units {
   const char* name;
   double scale;
-  double offset;  // of the origin, in the new unit
 };
 
-// The lights are distant: their directions hold in any unit.
-class InOtherUnits : public SharedRun, public ::testing::WithParamInterface<Units> {};
-
-TEST_P(InOtherUnits, TheSameSurface) {
-  const Eigen::Vector3d offset = GetParam().offset * Eigen::Vector3d(1, -1, 0.5);
-  Model model = ReadModel(shared_ / "p/sparse/0");
-  for (Point3D& point : model.points) point.xyz = GetParam().scale * point.xyz + offset;
-  for (Image& image : model.images) {
-    Rigid3d& pose = image.cam_from_world;
-    pose.translation = GetParam().scale * pose.translation - pose.rotation * offset;
+class UnitsTest : public SharedRun {
+ protected:
+  // The lights are distant: their directions hold in any unit.
+  std::vector<std::string> Elsewhere(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"--set", "output.overlays=false"});
+    return ArgumentsFor(Path("p"), Path("out"), more);
   }
-  WriteModel(model, folder_ / "p/sparse/0");
-  fs::create_directory_symlink(shared_ / "p/images", folder_ / "p/images");
-  const ProgramResult run = RunGlint(ArgumentsFor(Path("p"), Path("out"), {"--set", "output.overlays=false"}));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
 
+  // The project, of another size and then elsewhere.
+  void WriteProject(double scale, const Eigen::Vector3d& offset) const {
+    Model model = ReadModel(shared_ / "p/sparse/0");
+    for (Point3D& point : model.points) point.xyz = scale * point.xyz + offset;
+    for (Image& image : model.images) {
+      Rigid3d& pose = image.cam_from_world;
+      pose.translation = scale * pose.translation - pose.rotation * offset;
+    }
+    WriteModel(model, folder_ / "p/sparse/0");
+    fs::create_directory_symlink(shared_ / "p/images", folder_ / "p/images");
+  }
+};
+
+class InOtherUnits : public UnitsTest, public ::testing::WithParamInterface<Units> {};
+
+TEST_P(InOtherUnits, TheSameSurfaceToTheLastBit) {
+  // The scale is a power of two: no rounding differs, and no constant may have a length in it.
+  const double scale = GetParam().scale;
+  WriteProject(scale, Eigen::Vector3d::Zero());
+  const ProgramResult run = RunGlint(Elsewhere());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
   const TriangleMesh expected = ReadMesh(shared_ / "out/mesh.ply");
   TriangleMesh found = ReadMesh(folder_ / "out/mesh.ply");
-  for (Eigen::Vector3d& v : found.vertices) v = (v - offset) / GetParam().scale;
-  if (GetParam().offset == 0) {
-    // The unit is a power of two: no rounding differs, and no constant may have a length in it.
-    EXPECT_TRUE(found.vertices == expected.vertices);
-    EXPECT_TRUE(found.faces == expected.faces);
-    return;
-  }
-  // Far away the seed is the same to what rounding leaves: of the float numbers that it is stored in at the origin.
-  const TriangleMesh expected_seed = ReadMesh(shared_ / "out/seed.ply"), seed = ReadMesh(folder_ / "out/seed.ply");
-  ASSERT_EQ(seed.vertices.size(), expected_seed.vertices.size());
-  EXPECT_TRUE(seed.faces == expected_seed.faces);
-  for (size_t i = 0; i < seed.vertices.size(); ++i) {
-    const Eigen::Vector3d& x = expected_seed.vertices[i];
-    constexpr double kFloat = 0x1p-24, kDouble = 0x1p-52;
-    const double rounding = kFloat * x.cwiseAbs().maxCoeff() + 8 * kDouble * offset.norm();
-    EXPECT_LT((seed.vertices[i] - offset - x).cwiseAbs().maxCoeff(), rounding) << i;
-  }
-  // The voxels lie elsewhere: a surface is told to no more than half of one.
-  const MeshComparison comparison = CompareMeshes(found, expected);
-  EXPECT_LT(comparison.accuracy_rel.p95, 0.5 * kVoxelRel);
-  EXPECT_LT(comparison.completeness_rel.p95, 0.5 * kVoxelRel);
+  for (Eigen::Vector3d& v : found.vertices) v /= scale;
+  EXPECT_TRUE(found.vertices == expected.vertices);
+  EXPECT_TRUE(found.faces == expected.faces);
 }
 
-INSTANTIATE_TEST_SUITE_P(Units, InOtherUnits,
-                         ::testing::Values(Units{"Micro", 0x1p-20, 0}, Units{"Mega", 0x1p20, 0},
-                                           Units{"FarAway", 1, 1e6}),
+INSTANTIATE_TEST_SUITE_P(Units, InOtherUnits, ::testing::Values(Units{"Micro", 0x1p-20}, Units{"Mega", 0x1p20}),
                          [](const auto& unit) { return std::string(unit.param.name); });
+
+constexpr double kFloat = 0x1p-24, kDouble = 0x1p-52;  // roundings, of 1
+
+void ExpectNear(const TriangleMesh& found, const Eigen::Vector3d& offset, const TriangleMesh& expected,
+                double rounding) {
+  ASSERT_EQ(found.vertices.size(), expected.vertices.size());
+  EXPECT_TRUE(found.faces == expected.faces);
+  double largest = 0;
+  for (size_t i = 0; i < found.vertices.size(); ++i)
+    largest = std::max(largest, (found.vertices[i] - offset - expected.vertices[i]).cwiseAbs().maxCoeff());
+  EXPECT_LT(largest, rounding);
+}
+
+class FarFromTheOrigin : public UnitsTest {};
+
+TEST_F(FarFromTheOrigin, TheSameSurfaceToRounding) {
+  const Eigen::Vector3d offset = 1e6 * Eigen::Vector3d(1, -1, 0.5);
+  WriteProject(1, offset);
+  const fs::path out = folder_ / "out";
+  ASSERT_EQ(RunGlint(Elsewhere({"--until", "seed"})).exit_code, 0);
+
+  // The seed: to the float numbers that it is stored in at the origin, and the doubles of a position far away.
+  const TriangleMesh expected_seed = ReadMesh(shared_ / "out/seed.ply");
+  const double diagonal = Diagonal(expected_seed);
+  const double of_a_vertex =
+      kFloat *
+      BoundingBox(expected_seed).max().cwiseAbs().cwiseMax(BoundingBox(expected_seed).min().cwiseAbs()).maxCoeff();
+  ExpectNear(ReadMesh(out / "seed.ply"), offset, expected_seed, of_a_vertex + 8 * kDouble * offset.norm());
+
+  // What refinement starts from is remeshed, which compares lengths: one that is rounded the other way makes other
+  // triangles, all the way from there. Its surface is the same to the resolution that was asked for, a voxel: to the
+  // half of one that a grid rounds by.
+  TriangleMesh start = ReadMesh(shared_ / "out/stages/start.ply");
+  TriangleMesh found_start = ReadMesh(out / "stages/start.ply");
+  for (Eigen::Vector3d& v : found_start.vertices) v -= offset;
+  const MeshComparison comparison = CompareMeshes(found_start, start);
+  EXPECT_LT(comparison.accuracy_rel.p95, 0.5 * kVoxelRel);
+  EXPECT_LT(comparison.completeness_rel.p95, 0.5 * kVoxelRel);
+
+  // From the very same start: to the roundings of the float numbers in which a surface lies in its grid, some of them
+  // one after the other, and in its file.
+  for (Eigen::Vector3d& v : start.vertices) v += offset;
+  WriteMesh(out / "stages/start.ply", start);
+  const ProgramResult run = RunGlint(Elsewhere({"--from", "detect"}));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ExpectNear(ReadMesh(out / "mesh.ply"), offset, ReadMesh(shared_ / "out/mesh.ply"),
+             8 * kFloat * diagonal + of_a_vertex);
+}
 
 }  // namespace
 }  // namespace glint
