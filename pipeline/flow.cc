@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "highlights/check_lights.h"
+#include "highlights/lamp_size.h"
 #include "highlights/surface_colors.h"
 #include "io/mesh_io.h"
 #include "io/vdb_io.h"
@@ -213,7 +214,8 @@ void Flow::RefineSurface() {
   files.Publish();
 }
 
-// What the bundle says of a light replaces what the votes did; one that was not solved for stays as it was given.
+// What the bundle says of a light replaces what the votes did; one that was not solved for stays as it was given. That
+// the middle of an extended lamp is known less well than its highlights' the bundle does not know.
 void Flow::TakeRefinedLights(const RefineResult& refined) {
   for (size_t k = 0; k < refined.lights.size(); ++k) {
     FoundLight& found = found_[k];
@@ -222,7 +224,8 @@ void Flow::TakeRefinedLights(const RefineResult& refined) {
     const BundleLightUpdate& update = refined.summary.iterations.back().bundle.lights[k];
     found.support = update.contacts;
     if (update.sigma <= 0) continue;
-    found.light.sigma = update.sigma * (found.light.type == LightType::kPoint ? summary_.diagonal_world : 1);
+    const double solved = update.sigma * (found.light.type == LightType::kPoint ? summary_.diagonal_world : 1);
+    found.light.sigma = std::hypot(solved, CentroidSigma(scene_.views, BoundingBox(seed_).center(), found));
     found.covariance *= 0;
   }
   summary_.lights = found_;

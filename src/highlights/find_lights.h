@@ -32,8 +32,8 @@ struct FindLightsSummary {
   size_t not_paint = 0;         // of these, what goes dark in the other views
   double normal_sigma_deg = 0;  // of the seed's normals against the half vectors
   double outlier_share = 0;     // of the candidates, explained by no light
-  // Not empty: the object mirrors its surroundings rather than a few lights, and a sentence that says so. Lights found
-  // all the same are not to be trusted.
+  // Not empty: the bright spots are no highlights of a few lights (a mirror of its surroundings, print, relief), and a
+  // sentence that says so. Lights found all the same are not to be trusted.
   std::string mirror_like;
 
   std::vector<FoundLight> lights;  // as returned

@@ -12,8 +12,8 @@ namespace glint {
 namespace {
 
 constexpr size_t kFewestHighlights = 5;
-constexpr double kCentroidShare = 0.05;
-constexpr double kLeastShare = 0.5;  // of a highlight's radius, by the lamp: less passes for gloss and noise
+constexpr double kCentroidShare = 0.05;  // of its size an extended lamp's middle is uncertain
+constexpr double kLeastShare = 0.5;      // of a highlight's radius, by the lamp: less passes for gloss and noise
 
 // Standard deviation of the mean of values, from their median absolute deviation.
 double SigmaOfMean(const std::vector<double>& values) {
@@ -23,24 +23,18 @@ double SigmaOfMean(const std::vector<double>& values) {
   return 1.4826 * Median(deviations) / std::sqrt(static_cast<double>(values.size()));
 }
 
-void Widen(double spread_rad, const Scene& scene, const Eigen::Vector3d& center, FoundLight& light) {
-  Eigen::Matrix3d added = spread_rad * spread_rad * Eigen::Matrix3d::Identity();
-  if (light.light.type == LightType::kDistant) {
-    added -= spread_rad * spread_rad * light.light.vector * light.light.vector.transpose();
-  } else {
-    double distance = 0;
-    for (const View& view : scene.views)
-      distance +=
-          (light.light.vector - (light.light.frame == LightFrame::kWorld ? center : view.cam_from_world * center))
-              .norm() /
-          static_cast<double>(scene.views.size());
-    added *= distance * distance;
-  }
-  light.covariance += added;
-  light.light.sigma = LargestSigma(light.covariance, light.light);
-}
-
 }  // namespace
+
+double CentroidSigma(const std::vector<View>& views, const Eigen::Vector3d& center, const FoundLight& found) {
+  const double sigma_deg = kCentroidShare * found.angular_size_deg;
+  if (found.light.type == LightType::kDistant) return sigma_deg;
+  double distance = 0;
+  for (const View& view : views)
+    distance += (found.light.vector - (found.light.frame == LightFrame::kWorld ? center : view.cam_from_world * center))
+                    .norm() /
+                static_cast<double>(views.size());
+  return sigma_deg * M_PI / 180 * distance;
+}
 
 void MeasureSize(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
                  const Eigen::Vector3d& center, FoundLight& light) {
@@ -61,11 +55,17 @@ void MeasureSize(const Scene& scene, const SeedSurface& surface, const std::vect
   if (DiscShare(least) < kLeastShare) return;
   // The half vector turns by half of what the light does: a lamp of radius r is a disc of r / 2 there.
   light.angular_size_deg = 4 * DiscShare(Median(flatness)) * Median(widths_deg);
-  Widen(kCentroidShare * light.angular_size_deg * M_PI / 180, scene, center, light);
+  const double sigma = CentroidSigma(scene.views, center, light);
+  if (light.light.type == LightType::kPoint)
+    light.covariance += sigma * sigma * Eigen::Matrix3d::Identity();
+  else
+    light.covariance += std::pow(sigma * M_PI / 180, 2) *
+                        (Eigen::Matrix3d::Identity() - light.light.vector * light.light.vector.transpose());
+  light.light.sigma = LargestSigma(light.covariance, light.light);
 }
 
-double MedianWidthDeg(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
-                      const Light& light) {
+std::vector<double> WidthsDeg(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
+                              const Light& light) {
   std::vector<double> widths_deg;
   for (const Highlight& h : highlights) {
     const View& view = scene.views[h.view];
@@ -73,7 +73,7 @@ double MedianWidthDeg(const Scene& scene, const SeedSurface& surface, const std:
     const auto at = ray ? surface.Meet(view.Center(), *ray) : std::nullopt;
     if (at) widths_deg.push_back(MirrorTest(view, surface, light, h, *at).WidthDeg());
   }
-  return Median(widths_deg);
+  return widths_deg;
 }
 
 }  // namespace glint

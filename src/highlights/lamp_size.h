@@ -16,8 +16,12 @@ namespace glint {
 void MeasureSize(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
                  const Eigen::Vector3d& center, FoundLight& light);
 
-// Median over its highlights of how wide the lobe is (mirror_test.h), degrees; 0: none of them lies on the seed.
-double MedianWidthDeg(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
-                      const Light& light);
+// How far the middle of the extended lamp may be off its highlights' middle: a part of light.sigma, and in its units; 0
+// for a small one. `center`: of the object.
+double CentroidSigma(const std::vector<View>& views, const Eigen::Vector3d& center, const FoundLight& found);
+
+// How wide the lobes of its highlights are (mirror_test.h), degrees; of those that lie on the seed.
+std::vector<double> WidthsDeg(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
+                              const Light& light);
 
 }  // namespace glint
