@@ -17,6 +17,7 @@
 #include "pipeline/config.h"
 #include "pipeline/ending.h"
 #include "pipeline/event_stream.h"
+#include "pipeline/masks_back.h"
 #include "pipeline/terminal.h"
 
 namespace glint {
@@ -27,6 +28,7 @@ struct Arguments {
   std::filesystem::path batch;
   std::string from, until;
   bool force = false;
+  bool masks_back = false;
   bool json = false;
   std::vector<std::string> settings;
 };
@@ -38,7 +40,12 @@ std::optional<RunStage> StageNamed(const std::string& name) {
 }
 
 RunSummary RunOne(const Arguments& arguments, Progress& progress) {
-  return Run(arguments.run, ResolveConfig(arguments.run.config, arguments.settings), progress);
+  Config config = ResolveConfig(arguments.run.config, arguments.settings);
+  if (arguments.masks_back)
+    config.photos.feature_masks =
+        KeepMasksForFeatures(arguments.run.project, arguments.run.out, arguments.run.stages.from == RunStage::kPhotos)
+            .string();
+  return Run(arguments.run, config, progress);
 }
 
 void RunWithEvents(const Arguments& arguments) {
@@ -104,6 +111,10 @@ void DeclareProjectOptions(CLI::App& command, Arguments& arguments) {
         command.add_option("--normals", run.normals,
                            "Folder of normal maps of the photographs (IMAGE.png, or COLMAP's)")})
     option->excludes(batch);
+  command
+      .add_flag("--masks-back", arguments.masks_back,
+                "Run COLMAP again, with no features on the highlights that an earlier run in OUT found")
+      ->excludes(batch);
   command
       .add_option_function<std::string>(
           "--box", [&arguments](const std::string& box) { arguments.settings.push_back("seed.object.box=" + box); },

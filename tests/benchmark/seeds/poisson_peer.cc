@@ -47,6 +47,9 @@ TriangleMesh PoissonSurface(const std::vector<Eigen::Vector3d>& points, const st
       face[k++] = static_cast<int>(static_cast<unsigned>(v));
     mesh.faces.push_back(face);
   }
+  // CGAL's faces may look inward.
+  if (SignedVolume(mesh) < 0)
+    for (Eigen::Vector3i& f : mesh.faces) std::swap(f[0], f[1]);
   return mesh;
 }
 
