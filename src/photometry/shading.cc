@@ -176,9 +176,9 @@ void AddTilts(const std::vector<Equation>& equations, const std::vector<SurfaceP
 
 }  // namespace
 
-Shading TiltsFromShading(const TriangleMesh& surface, const Scene& scene, const std::vector<Light>& lights,
-                         const std::vector<SurfacePatch>& patches) {
-  Shading shading;
+ShadingTilts TiltsFromShading(const TriangleMesh& surface, const Scene& scene, const std::vector<Light>& lights,
+                              const std::vector<SurfacePatch>& patches) {
+  ShadingTilts shading;
   if (lights.empty()) return shading;
   const Shadows shadows(surface);
   for (const std::vector<size_t>& material : SortIntoMaterials(patches)) {

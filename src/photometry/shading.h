@@ -22,7 +22,7 @@ struct Material {
   bool used = false;
 };
 
-struct Shading {
+struct ShadingTilts {
   std::vector<Tilt> tilts;
   std::vector<Material> materials;
 };
@@ -33,7 +33,7 @@ struct Shading {
 // average; what does not fit (marks, prints, what a shadow's edge passes) is given little weight. Solved for the
 // normal, the same equation then is a Tilt. Cast shadows are those that the surface throws; patches near an edge of a
 // shadow are left out. Nothing is said where the brightness does not follow the normals.
-Shading TiltsFromShading(const TriangleMesh& surface, const Scene& scene, const std::vector<Light>& lights,
-                         const std::vector<SurfacePatch>& patches);
+ShadingTilts TiltsFromShading(const TriangleMesh& surface, const Scene& scene, const std::vector<Light>& lights,
+                              const std::vector<SurfacePatch>& patches);
 
 }  // namespace glint

@@ -65,7 +65,7 @@ void PhotoTilts::LookAgain(const TriangleMesh& surface, const std::vector<Light>
   std::vector<Light> lights_in_world;
   for (const Light& light : lights) lights_in_world.push_back(frame_.ToWorld(light));
   TakeLooks(scene_, *colors_, lights_in_world, patches);
-  const Shading seen = TiltsFromShading(world, scene_, lights_in_world, patches);
+  const ShadingTilts seen = TiltsFromShading(world, scene_, lights_in_world, patches);
   summary_.materials = seen.materials;
   summary_.num_shaded = static_cast<int>(seen.tilts.size());
   Take(seen.tilts, options_.shading_weight);

@@ -63,7 +63,7 @@ double MedianError(const std::vector<Tilt>& tilts) {
 TEST(Shading, TellsTheNormalsOfAMatteSphere) {
   MatteSphere sphere({testing::DistantLight(1, 0.2, 1), testing::DistantLight(-0.8, 0.5, 1)});
   sphere.Paint(0.08);
-  const Shading shading = TiltsFromShading(sphere.mesh, sphere.scene, sphere.lights, sphere.patches);
+  const ShadingTilts shading = TiltsFromShading(sphere.mesh, sphere.scene, sphere.lights, sphere.patches);
   ASSERT_EQ(shading.materials.size(), 1u);
   EXPECT_TRUE(shading.materials[0].used);
   EXPECT_GT(shading.tilts.size(), sphere.patches.size() / 3);
@@ -85,7 +85,7 @@ TEST(Shading, LightsThatTheCameraCarriesAreTakenViewByView) {
   sphere.Paint(0.05);
   // The falloff that the painted sphere does not have is small in the distance.
   for (View& view : sphere.scene.views) EXPECT_GT(view.Center().norm(), 2);
-  const Shading shading = TiltsFromShading(sphere.mesh, sphere.scene, sphere.lights, sphere.patches);
+  const ShadingTilts shading = TiltsFromShading(sphere.mesh, sphere.scene, sphere.lights, sphere.patches);
   EXPECT_GT(shading.tilts.size(), sphere.patches.size() / 2);
   EXPECT_LT(MedianError(shading.tilts), 0.1);
 }
@@ -93,7 +93,7 @@ TEST(Shading, LightsThatTheCameraCarriesAreTakenViewByView) {
 TEST(Shading, SaysNothingWhereBrightnessDoesNotFollowTheNormals) {
   MatteSphere sphere({testing::DistantLight(1, 0.2, 1)});
   sphere.Paint(0.05, false);
-  const Shading shading = TiltsFromShading(sphere.mesh, sphere.scene, sphere.lights, sphere.patches);
+  const ShadingTilts shading = TiltsFromShading(sphere.mesh, sphere.scene, sphere.lights, sphere.patches);
   ASSERT_EQ(shading.materials.size(), 1u);
   EXPECT_FALSE(shading.materials[0].used);
   EXPECT_TRUE(shading.tilts.empty());
