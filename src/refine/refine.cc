@@ -60,7 +60,8 @@ class Refiner {
         progress_(progress),
         frame_(UnitFrame::Of(input.seed)),
         highlights_(MakeHighlights()),
-        tilts_(input.scene, input.images, input.normals, options.tilts, frame_, progress) {
+        tilts_(input.scene, input.lights.empty() ? nullptr : input.images, input.normals, options.tilts, frame_,
+               progress) {
     seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
     seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
     surface_ = seed_;
