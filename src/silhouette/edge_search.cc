@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "silhouette/lab.h"
+
 namespace glint::internal {
 namespace {
 
@@ -25,9 +27,7 @@ Eigen::Vector3d ColorAt(const cv::Mat& lab, const Eigen::Vector2d& at) {
 }  // namespace
 
 std::vector<ContourPoint> OnEdges(const cv::Mat& image, const std::vector<ContourPoint>& contour) {
-  cv::Mat lab;
-  image.convertTo(lab, CV_32F, 1.0 / 255);
-  cv::cvtColor(lab, lab, cv::COLOR_BGR2Lab);
+  cv::Mat lab = ToLab(image);
   cv::GaussianBlur(lab, lab, cv::Size(), 0.7);
   std::vector<ContourPoint> out;
   if (lab.cols < 2 || lab.rows < 2) return out;

@@ -7,6 +7,8 @@
 #include <opencv2/imgproc/detail/gcgraph.hpp>
 #include <vector>
 
+#include "silhouette/lab.h"
+
 namespace glint::internal {
 namespace {
 
@@ -149,12 +151,9 @@ cv::Mat Odds(const SegmentInput& in, const cv::Mat& colors) {
 }  // namespace
 
 cv::Mat Segment(const SegmentInput& input) {
-  cv::Mat lab;
-  input.image.convertTo(lab, CV_32F, 1.0 / 255);
-  cv::cvtColor(lab, lab, cv::COLOR_BGR2Lab);
+  const cv::Mat lab = ToLab(input.image);
   cv::Mat quiet;
   cv::GaussianBlur(lab, quiet, cv::Size(), 0.8);
-  lab = lab.reshape(3, lab.rows);
   const cv::Mat labels = ColorLabels(quiet);
   cv::Mat known(labels.size(), CV_8U, cv::Scalar(kUnknown)), mask;
   for (int round = 0; round < kRounds; ++round) {
