@@ -16,7 +16,7 @@ constexpr double kOneSideDeg = 35;        // nine of ten directions lie within t
 constexpr double kNarrowCamerasDeg = 30;  // the same of the cameras, seen from the object
 constexpr double kUncertainLightDeg = 2;
 constexpr double kUncertainLightRel = 0.1;  // of the object's diagonal
-constexpr double kUnsure = 0.2;             // confidence below which a vertex rests on smoothness alone
+constexpr double kUnsure = 0.2;             // confidence of normals that are known to 10 degrees
 constexpr double kLargeShare = 0.5;
 
 using List = std::vector<Advice>;
@@ -166,8 +166,8 @@ void AboutSurface(const RunSummary& summary, const TriangleMesh& mesh, List& lis
   if (share > kLargeShare)
     list.push_back(
         {AdviceLevel::kNote,
-         fmt::format("{:.0f} % of the surface has no highlight near it; it rests on the sparse points and on "
-                     "smoothness.",
+         fmt::format("The normals of {:.0f} % of the surface are known to no better than 10°: no highlight is near "
+                     "enough, and it rests on the sparse points and on smoothness.",
                      100 * share),
          "Look at the surface coloured by confidence: photograph so that highlights pass over what is dark."});
 }

@@ -118,6 +118,8 @@ Json ToJson(const RefineSummary& refine) {
 std::string ReportJson(const RunSummary& summary) {
   Json json = {{"glint", GLINT_VERSION},     {"versions", Json::object()}, {"command", summary.command},
                {"outcome", summary.outcome}, {"notes", summary.notes},     {"warnings", summary.warnings}};
+  std::error_code gone;  // the folder, while the run was on
+  json["command_folder"] = std::filesystem::current_path(gone).string();
   for (const auto& [name, version] : LibraryVersions()) json["versions"][name] = version;
   if (!summary.colmap_version.empty()) json["versions"]["COLMAP"] = summary.colmap_version;
   json["project"] = {{"model", summary.model.string()}, {"images", summary.images.string()},

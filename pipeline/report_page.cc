@@ -38,13 +38,14 @@ std::string DataElement(const std::string& id, const Json& json) {
   return "<script type=\"application/json\" id=\"" + id + "\">" + ForHtml(json) + "</script>\n";
 }
 
-// The folder that a person calls the project: without COLMAP's own names below it.
+// The folder that a person calls the project: without COLMAP's own names below it, and names that say nothing.
 std::string ProjectName(const std::filesystem::path& model) {
   for (std::filesystem::path path = std::filesystem::absolute(model).lexically_normal(); path.has_relative_path();
        path = path.parent_path()) {
     const std::string name = path.filename().string();
     const bool digits = name.find_first_not_of("0123456789") == std::string::npos;
-    if (!name.empty() && !digits && name != "sparse" && name != "dense") return name;
+    const auto says_nothing = {"sparse", "dense", "colmap", "project"};
+    if (!name.empty() && !digits && std::ranges::find(says_nothing, name) == says_nothing.end()) return name;
   }
   return "project";
 }
@@ -82,13 +83,16 @@ Json Statuses() {
 
 // What differs from run to run: taken out of report.json's content.
 Json TakeRun(Json& report) {
-  Json run = {{"command", report["command"]}, {"total_seconds", report["total_seconds"]}, {"stages", report["stages"]}};
+  Json run;
+  for (const char* key : {"command", "command_folder", "total_seconds", "stages"}) {
+    run[key] = report[key];
+    report.erase(key);
+  }
   run["iteration_seconds"] = Json::array();
   for (Json& iteration : report["refine"]["iterations"]) {
     run["iteration_seconds"].push_back(iteration["seconds"]);
     iteration.erase("seconds");
   }
-  for (const char* key : {"command", "total_seconds", "stages"}) report.erase(key);
   return run;
 }
 

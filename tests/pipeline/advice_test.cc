@@ -121,7 +121,7 @@ TEST(Advice, SurfaceThatNoHighlightReaches) {
   run.mesh.confidence.assign(100, 0.05f);
   run.summary.refine.converged = false;
   run.summary.refine.iterations.back().contact_motion_voxels = 0.75;
-  EXPECT_THAT(run.Give(), Finding("100 % of the surface has no highlight near it"));
+  EXPECT_THAT(run.Give(), Finding("normals of 100 % of the surface are known to no better than 10°"));
   EXPECT_THAT(run.Give(), Finding("still moved by 0.75 voxels"));
 }
 

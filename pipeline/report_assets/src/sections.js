@@ -109,6 +109,7 @@ function copyButton(text) {
 
 export function buildRun(data) {
   const { report, run } = data;
+  byId('command-folder').textContent = run.command_folder ? `In the folder ${run.command_folder}:` : '';
   byId('command').replaceChildren(el('code', {}, run.command), copyButton(run.command));
   const longest = Math.max(...run.stages.map((s) => s.seconds), 1e-9);
   byId('times').replaceChildren(...run.stages.map((s) =>
