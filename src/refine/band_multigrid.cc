@@ -112,14 +112,7 @@ void BandMultigrid::FactorCoarsest() {
   Level& level = *levels_.back();
   const size_t n = level.x.size();
   if (n > 2 * kDirectSize) return;
-  Eigen::MatrixXf matrix(n, n);
-  std::vector<float> unit(n, 0), column;
-  for (size_t i = 0; i < n; ++i) {
-    unit[i] = 1;
-    level.matrix->Apply(unit, column);
-    unit[i] = 0;
-    matrix.col(i) = Eigen::Map<const Eigen::VectorXf>(column.data(), n);
-  }
+  Eigen::MatrixXf matrix = level.matrix->Dense();
   // A touch of the diagonal keeps what nothing holds from blowing up.
   for (size_t i = 0; i < n; ++i) matrix(i, i) += level.inverse[i] > 0 ? 1e-5f / level.inverse[i] : 1;
   level.direct.compute(matrix);

@@ -45,6 +45,9 @@ class BandOperator {
   template <class T>
   void Apply(const std::vector<T>& phi, std::vector<T>& out) const;
 
+  // The matrix itself, for small bands.
+  Eigen::MatrixXf Dense() const;
+
   template <class T>
   void TakeDifferences(const std::vector<T>& phi, std::vector<Differences>& differences) const;
   // What the transposed differences are taken of: each difference times its weights, laid out by who needs it. Slot 0

@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "refine/oriented_tree.h"
 
 namespace glint {
 namespace {
@@ -27,6 +28,85 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> TangentAxes(const Eigen::Vector3d& n
   return {u, n.cross(u)};
 }
 
+// The nearest targets of one query, by sectors. What it leaves out of a tree holds no target that would be taken.
+class Search {
+ public:
+  Search(const Eigen::Vector3d& position, const Eigen::Vector3d& normal, const NeighborOptions& options)
+      : position_(position),
+        normal_(normal),
+        axes_(TangentAxes(normal)),
+        options_(options),
+        min_cos_(std::cos(options.max_normal_angle)),
+        max_sin_(std::sin(options.max_chord_angle)),
+        per_sector_(std::max(1, (options.count + kSectors - 1) / kSectors)) {}
+
+  bool LeavesOut(const OrientedTree::Node& node) const;
+  void Visit(int index, const Eigen::Vector3d& position, const Eigen::Vector3d& normal);
+
+  std::vector<int> Sorted() const {
+    std::vector<int> found;
+    for (const std::vector<Candidate>& heap : sectors_)
+      for (const Candidate& candidate : heap) found.push_back(candidate.index);
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  // The direction of a chord in the tangent plane, in sectors from 0 to kSectors.
+  double SectorOf(const Eigen::Vector3d& chord) const {
+    const double angle = std::atan2(chord.dot(axes_.second), chord.dot(axes_.first)) + M_PI;
+    return angle * kSectors / (2 * M_PI);
+  }
+  bool Takes(int sector, double distance2) const {
+    return sectors_[sector].size() < per_sector_ || distance2 <= sectors_[sector].front().distance2;
+  }
+
+  const Eigen::Vector3d position_, normal_;
+  const std::pair<Eigen::Vector3d, Eigen::Vector3d> axes_;
+  const NeighborOptions options_;
+  const double min_cos_, max_sin_;
+  const size_t per_sector_;
+  std::array<std::vector<Candidate>, kSectors> sectors_;  // each a heap of the nearest
+};
+
+bool Search::LeavesOut(const OrientedTree::Node& node) const {
+  constexpr double kSlack = 1e-9;  // for rounding, relative or in radians
+  const double off_axis = std::acos(std::clamp(normal_.dot(node.axis), -1.0, 1.0));
+  if (off_axis - node.spread > options_.max_normal_angle + kSlack) return true;
+  const double distance2 = (1 - kSlack) * node.box.squaredExteriorDistance(position_);
+  const Eigen::Vector3d chord = node.box.center() - position_;
+  const double radius = 0.5 * node.box.sizes().norm() * (1 + kSlack);
+  const double across = std::hypot(chord.dot(axes_.first), chord.dot(axes_.second));
+  const auto takes = [&](int sector) { return Takes(sector, distance2); };
+  if (across <= radius * (1 + kSlack)) {  // all around
+    for (int s = 0; s < kSectors; ++s)
+      if (takes(s)) return false;
+    return true;
+  }
+  const double half = std::asin(radius / across) * kSectors / (2 * M_PI) + kSlack, middle = SectorOf(chord);
+  for (int s = static_cast<int>(std::floor(middle - half)); s <= static_cast<int>(std::floor(middle + half)); ++s)
+    if (takes((s + kSectors) % kSectors)) return false;
+  return true;
+}
+
+void Search::Visit(int index, const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
+  if (normal_.dot(normal) < min_cos_) return;
+  const Eigen::Vector3d chord = position - position_;
+  const double distance2 = chord.squaredNorm();
+  if (distance2 == 0) return;
+  std::vector<Candidate>& heap = sectors_[std::min(kSectors - 1, static_cast<int>(SectorOf(chord)))];
+  const Candidate candidate{distance2, index};
+  if (heap.size() == per_sector_ && !(candidate < heap.front())) return;
+  const Eigen::Vector3d mean_normal = (normal_ + normal).normalized();
+  if (std::abs(mean_normal.dot(chord)) > max_sin_ * std::sqrt(distance2)) return;
+  if (heap.size() == per_sector_) {
+    std::pop_heap(heap.begin(), heap.end());
+    heap.pop_back();
+  }
+  heap.push_back(candidate);
+  std::push_heap(heap.begin(), heap.end());
+}
+
 }  // namespace
 
 std::vector<std::vector<int>> SectorNeighbors(const std::vector<Eigen::Vector3d>& query_positions,
@@ -35,34 +115,14 @@ std::vector<std::vector<int>> SectorNeighbors(const std::vector<Eigen::Vector3d>
                                               const std::vector<Eigen::Vector3d>& target_normals,
                                               const NeighborOptions& options) {
   GLINT_CHECK_EQ(query_positions.size(), query_normals.size());
-  GLINT_CHECK_EQ(target_positions.size(), target_normals.size());
-  const double min_cos = std::cos(options.max_normal_angle), max_sin = std::sin(options.max_chord_angle);
-  const size_t per_sector = std::max(1, (options.count + kSectors - 1) / kSectors);
+  const OrientedTree targets(target_positions, target_normals);
   std::vector<std::vector<int>> neighbors(query_positions.size());
   ParallelFor(query_positions.size(), 16, [&](size_t i) {
-    const auto [u, v] = TangentAxes(query_normals[i]);
-    std::array<std::vector<Candidate>, kSectors> sectors;  // each a heap of the nearest
-    for (size_t j = 0; j < target_positions.size(); ++j) {
-      if (query_normals[i].dot(target_normals[j]) < min_cos) continue;
-      const Eigen::Vector3d chord = target_positions[j] - query_positions[i];
-      const double distance2 = chord.squaredNorm();
-      if (distance2 == 0) continue;
-      const double angle = std::atan2(chord.dot(v), chord.dot(u)) + M_PI;
-      std::vector<Candidate>& heap = sectors[std::min(kSectors - 1, static_cast<int>(angle * kSectors / (2 * M_PI)))];
-      const Candidate candidate{distance2, static_cast<int>(j)};
-      if (heap.size() == per_sector && !(candidate < heap.front())) continue;
-      const Eigen::Vector3d mean_normal = (query_normals[i] + target_normals[j]).normalized();
-      if (std::abs(mean_normal.dot(chord)) > max_sin * std::sqrt(distance2)) continue;
-      if (heap.size() == per_sector) {
-        std::pop_heap(heap.begin(), heap.end());
-        heap.pop_back();
-      }
-      heap.push_back(candidate);
-      std::push_heap(heap.begin(), heap.end());
-    }
-    for (const std::vector<Candidate>& heap : sectors)
-      for (const Candidate& candidate : heap) neighbors[i].push_back(candidate.index);
-    std::sort(neighbors[i].begin(), neighbors[i].end());
+    Search search(query_positions[i], query_normals[i], options);
+    targets.Walk(
+        query_positions[i], [&](const OrientedTree::Node& node) { return search.LeavesOut(node); },
+        [&](uint32_t j) { search.Visit(static_cast<int>(j), target_positions[j], target_normals[j]); });
+    neighbors[i] = search.Sorted();
   });
   return neighbors;
 }

@@ -248,6 +248,30 @@ TEST(BandOperator, IsSymmetricAndItsScaledEigenvaluesAreAtMostOne) {
   EXPECT_GT(eigenvalue, 0.3);
 }
 
+TEST(BandOperator, DenseIsWhatApplySays) {
+  const Band band(MeshToLevelSet(testing::Icosphere(2), 0.45));
+  const auto n = static_cast<int32_t>(band.size());
+  BandWeights weights = Weights(band);
+  weights.bend_change = 3;
+  weights.pull.assign(band.size(), 0.02f);
+  BandRows rows;
+  for (int32_t i = 0; i < 3 * n; ++i) {
+    rows.Push(i % n, 0.7);
+    rows.Push((7 * i + 2) % n, -0.4);
+    rows.Push(i % 5 == 0 ? i % n : (11 * i) % n, 0.3);  // some name a voxel twice
+    rows.Close(0, 0.1 * (i % 4));
+  }
+  const BandOperator matrix(band, weights, rows);
+  const Eigen::MatrixXf dense = matrix.Dense();
+  std::vector<float> unit(band.size(), 0), column;
+  for (int32_t j = 0; j < n; ++j) {
+    unit[j] = 1;
+    matrix.Apply(unit, column);
+    unit[j] = 0;
+    EXPECT_LE((dense.col(j) - Eigen::Map<Eigen::VectorXf>(column.data(), n)).lpNorm<Eigen::Infinity>(), 1e-6f) << j;
+  }
+}
+
 TEST(BandTransfer, ConstantsStayAndRestrictionIsTheTranspose) {
   const Band band(Sphere());
   const BandTransfer transfer(band);
