@@ -56,7 +56,8 @@ void MeasureBaselines(const Case& c, const Plan& plan) {
 void MeasureCase(const Case& c, const Plan& plan) {
   const fs::path with = c.out / "with", without = c.out / "without";
   try {
-    const double without_s = plan.without ? RunCase(c, plan, {"refine.use_highlights=false", "refine.tilts.use_shading=false"}, without) : 0;
+    const double without_s =
+        plan.without ? RunCase(c, plan, {"refine.use_highlights=false", "refine.tilts.use_shading=false"}, without) : 0;
     const double with_s = RunCase(c, plan, {}, with);
     PrintRow(c.name, "seed", MeasureFile(c, with / "seed.ply"), 0);
     PrintRow(c.name, "faired seed", MeasureFile(c, with / "stages" / "start.ply"), 0);
