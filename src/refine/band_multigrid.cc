@@ -13,6 +13,7 @@ namespace {
 constexpr size_t kGrain = 1 << 13;
 constexpr size_t kDirectSize = 600;  // voxels, from which on a dense factorisation is quicker
 constexpr size_t kMaxLevels = 12;
+constexpr size_t kMaxRows = 32;  // with the same first voxel, on the coarse bands: more only cost memory
 // The smoother takes down eigenvalues from here to 1. What the next coarser band cannot hold begins at 1/36 for the
 // squared Laplacian, whose waves across one axis are the slowest.
 constexpr float kSmallestSmoothed = 1.f / 30;
@@ -79,7 +80,7 @@ struct BandMultigrid::Level {
   std::vector<float> scratch;
 };
 
-BandMultigrid::BandMultigrid(const BandOperator& finest) {
+BandMultigrid::BandMultigrid(const BandOperator& finest) : sample_(finest.rows(), finest.topology().size(), kMaxRows) {
   levels_.push_back(std::make_unique<Level>());
   levels_[0]->matrix = &finest;
   levels_[0]->Prepare();
@@ -89,8 +90,11 @@ BandMultigrid::BandMultigrid(const BandOperator& finest) {
     coarse->transfer = std::make_unique<BandTransfer>(fine.matrix->topology());
     if (coarse->transfer->coarse().size() > fine.x.size() * 3 / 4) break;  // as coarse as it gets
     coarse->weights = CoarseWeights(fine.matrix->weights(), fine.x.size(), *coarse->transfer);
-    coarse->own = std::make_unique<BandOperator>(coarse->transfer->coarse(), coarse->weights,
-                                                 coarse->transfer->Restrict(fine.matrix->rows()));
+    const BandRows& rows = fine.matrix->rows();
+    const bool thin = !fine.own && !sample_.All();
+    coarse->own = std::make_unique<BandOperator>(
+        coarse->transfer->coarse(), coarse->weights,
+        thin ? coarse->transfer->Restrict(sample_.Taken(rows)) : coarse->transfer->Restrict(rows));
     coarse->matrix = coarse->own.get();
     coarse->Prepare();
     levels_.push_back(std::move(coarse));
@@ -101,8 +105,9 @@ BandMultigrid::BandMultigrid(const BandOperator& finest) {
 BandMultigrid::~BandMultigrid() = default;
 
 void BandMultigrid::UpdateRowWeights() {
+  const std::vector<double> weights = sample_.Weights(levels_[0]->matrix->rows().weight);
   for (auto& level : levels_) {
-    if (level->own) level->own->SetRowWeights(levels_[0]->matrix->rows().weight);
+    if (level->own) level->own->SetRowWeights(weights);
     level->inverse = level->matrix->InverseAbsoluteRowSums();
   }
   FactorCoarsest();

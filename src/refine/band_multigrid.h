@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "refine/band_operator.h"
+#include "refine/row_sample.h"
 
 namespace glint {
 
 // Coarse voxels are 2³ fine ones; between them functions are quadratic B-splines, whose bending energy on the fine
 // band is that of the coarse one (piecewise linear ones have twice as much, and the cycle would not converge for a
 // fourth-order operator). Smoothing is Chebyshev's polynomial in the matrix scaled by its absolute row sums, so that no
-// eigenvalue needs estimating; rows are restricted exactly, the other terms are discretised anew. The cycle is a
-// symmetric positive definite linear map, deterministic. Memory: about 110 bytes a voxel of the finest band.
+// eigenvalue needs estimating; rows are restricted exactly, but where they crowd a sample of them, the other terms are
+// discretised anew. The cycle is a symmetric positive definite linear map, deterministic. Memory: about 110 bytes a
+// voxel of the finest band.
 class BandMultigrid {
  public:
   // Keeps a reference to `finest`.
@@ -32,6 +34,7 @@ class BandMultigrid {
   void Cycle(size_t level);
   void FactorCoarsest();
 
+  const RowSample sample_;  // of the finest band's rows: those of the coarse ones
   std::vector<std::unique_ptr<Level>> levels_;
 };
 

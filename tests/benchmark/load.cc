@@ -1,9 +1,9 @@
 // Load: many large photographs, many points and highlights, many runs in one process. Each line says the time and the
 // peak of the memory since the line before.
-//   load images --images 1000 --size 4000x3000 --folder DIR   photographs streamed through detection and the gate's
-//   maps load model --points 5000000 --highlights 20000 --folder DIR   a model read, and its highlights refined load
-//   soak --project PROJECT --lights FILE --runs 20 --folder DIR   whole runs, one after the other load project --images
-//   1000 --points 20000 --folder DIR   makes a project for the program (scripts/load)
+//   load images --images 1000 --size 4000x3000 --folder DIR: photographs streamed through detection and the gate's maps
+//   load model --points 5000000 --highlights 20000 --folder DIR: a model read, and its highlights refined
+//   load soak --project PROJECT --lights FILE --runs 20 --folder DIR: whole runs, one after the other
+//   load project --images 1000 --points 20000 --folder DIR: makes a project for the program (scripts/load)
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -179,8 +179,10 @@ EllipsoidModel MakeEllipsoidModel(size_t num_points, size_t num_highlights) {
   return made;
 }
 
-void LoadModel(const fs::path& folder, size_t num_points, size_t num_highlights) {
+// A quarter of it, a half and the whole, or the whole alone.
+void LoadModel(const fs::path& folder, size_t num_points, size_t num_highlights, bool whole) {
   for (const size_t part : {4, 2, 1}) {
+    if (whole && part > 1) continue;
     const EllipsoidModel made = MakeEllipsoidModel(num_points / part, num_highlights / part);
     WriteModel(made.model, folder / "model");
     const Meter reading;
@@ -235,6 +237,7 @@ int main(int argc, char** argv) {
   std::string folder, size = "4000x3000";
   size_t num_images = 1000, num_points = 5'000'000, num_highlights = 20'000;
   int num_runs = 20;
+  bool whole = false;
   glint::RunArguments run;
   const auto add = [&](const char* name, const char* help) {
     CLI::App* command = app.add_subcommand(name, help);
@@ -247,6 +250,7 @@ int main(int argc, char** argv) {
   CLI::App* model = add("model", "Points and highlights");
   model->add_option("--points", num_points);
   model->add_option("--highlights", num_highlights);
+  model->add_flag("--whole", whole, "Not a quarter and a half of it before");
   CLI::App* project = add("project", "A project for the program");
   project->add_option("--images", num_images);
   project->add_option("--points", num_points);
@@ -263,7 +267,7 @@ int main(int argc, char** argv) {
     glint::LoadImages(folder, num_images, std::stoi(size.substr(0, x)), std::stoi(size.substr(x + 1)));
   }
   if (*project) glint::MakeProject(folder, num_images, num_points);
-  if (*model) glint::LoadModel(folder, num_points, num_highlights);
+  if (*model) glint::LoadModel(folder, num_points, num_highlights, whole);
   if (*soak) {
     run.out = folder;
     glint::Soak(run, num_runs);

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "refine/band_transfer.h"
+#include "refine/row_sample.h"
 #include "sdf/mesh_to_level_set.h"
 #include "tests/support/shapes.h"
 
@@ -287,6 +288,65 @@ TEST(BandTransfer, ConstantsStayAndRestrictionIsTheTranspose) {
   transfer.Restrict(fine, restricted);
   EXPECT_NEAR(std::inner_product(fine.begin(), fine.end(), prolonged.begin(), 0.0),
               std::inner_product(coarse.begin(), coarse.end(), restricted.begin(), 0.0), 1e-3);
+}
+
+// Rows at random places of a sphere, a few of them a thousand times as heavy.
+BandRows Crowd(const Band& band, int count) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  BandRows rows;
+  std::array<int32_t, 8> voxels;
+  std::array<double, 8> weights;
+  for (int k = 0; k < count; ++k) {
+    const Eigen::Vector3d x(normal(random), normal(random), normal(random));
+    if (!band.Trilinear(x.normalized(), voxels, weights)) continue;
+    for (int e = 0; e < 8; ++e) rows.Push(voxels[e], weights[e]);
+    rows.Close(0.01 * x.normalized().z(), k % 100 == 0 ? 1000 : 1);
+  }
+  return rows;
+}
+
+TEST(RowSample, StandsForAll) {
+  const Band band(Sphere());
+  const BandRows few = Crowd(band, 500), many = Crowd(band, 100000);
+  EXPECT_TRUE(RowSample(few, band.size(), 32).All());
+  EXPECT_EQ(RowSample(few, band.size(), 32).Weights(few.weight), few.weight);
+  const RowSample sample(many, band.size(), 32);
+  const BandRows taken = sample.Taken(many);
+  EXPECT_LT(taken.size(), many.size() / 2);
+  EXPECT_EQ(taken.weight, sample.Weights(many.weight));
+  std::vector<double> of_all(band.size(), 0), of_taken(band.size(), 0), count(band.size(), 0);
+  for (size_t r = 0; r < many.size(); ++r) of_all[many.voxel[many.begin[r]]] += many.weight[r];
+  for (size_t r = 0; r < taken.size(); ++r) {
+    of_taken[taken.voxel[taken.begin[r]]] += taken.weight[r];
+    ++count[taken.voxel[taken.begin[r]]];
+  }
+  for (size_t v = 0; v < band.size(); ++v) {
+    EXPECT_NEAR(of_taken[v], of_all[v], 1e-9 * of_all[v]);
+    EXPECT_LE(count[v], 32);
+  }
+  // Robust weights may be nothing for those that were taken.
+  std::vector<double> weight(many.size(), 0);
+  for (size_t r = 0; r < many.size(); r += 3) weight[r] = 2;
+  const std::vector<double> of_sample = sample.Weights(weight);
+  EXPECT_NEAR(std::accumulate(of_sample.begin(), of_sample.end(), 0.0),
+              std::accumulate(weight.begin(), weight.end(), 0.0), 1e-6);
+}
+
+TEST(BandMultigrid, ConvergesAsWellWhereRowsCrowd) {
+  std::vector<int> iterations;
+  for (int count : {2000, 100000}) {
+    const Band band(Sphere());
+    BandWeights weights = Weights(band);
+    weights.smoothness = 10;
+    weights.normal = 0.5;
+    BandSystem system(band, weights, Crowd(band, count));
+    std::vector<double> phi(band.phi().begin(), band.phi().end());
+    const SolveReport report = system.Solve(500, 1e-4, phi);
+    EXPECT_LT(report.relative_residual, 1e-4);
+    iterations.push_back(report.iterations);
+  }
+  EXPECT_LT(iterations[1], 2 * iterations[0] + 3);
 }
 
 TEST(BandMultigrid, IterationsHardlyGrowAsVoxelsHalve) {
