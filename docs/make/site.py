@@ -14,7 +14,8 @@ PAGE = """<!DOCTYPE html>
 body {{ font: 16px/1.55 system-ui, sans-serif; max-width: 60rem; margin: 0 auto; padding: 1rem 1.2rem 4rem; }}
 nav {{ display: flex; flex-wrap: wrap; gap: .2rem 1rem; }} img {{ max-width: 100%; height: auto; background: #fff; }}
 pre {{ padding: .8rem 1rem; overflow-x: auto; background: #8882; border-radius: .3rem; }}
-code {{ font-size: .92em; }} a {{ color: #2a78c8; }}
+code {{ font-size: .92em; }} a {{ color: #2268b0; }}
+@media (prefers-color-scheme: dark) {{ a {{ color: #7ab4f5; }} }}
 table {{ border-collapse: collapse; display: block; overflow-x: auto; }}
 td, th {{ border-bottom: 1px solid #8885; padding: .3rem .8rem .3rem 0; text-align: left; vertical-align: top; }}
 </style></head><body><nav>{menu}</nav>

@@ -42,6 +42,10 @@ class Mesh:
             return 0.0
         return float(np.linalg.norm(np.ptp(np.asarray(self.vertices), axis=0)))
 
+    def __repr__(self) -> str:
+        has = [name for name in ("normals", "colors") if getattr(self, name) is not None] + list(self.attributes)
+        return f"Mesh(num_vertices={len(self.vertices)}, num_faces={len(self.faces)}, has={has})"
+
 
 MeshLike = Union[Mesh, Tuple[Any, Any]]
 

@@ -33,6 +33,11 @@ def test_winding_number_agrees_on_a_closed_mesh():
     )
 
 
+def test_a_mesh_is_shown_by_its_counts():
+    mesh = glint.Mesh(np.zeros((4, 3)), np.zeros((2, 3), np.int32), attributes={"confidence": np.zeros(4, np.float32)})
+    assert repr(mesh) == "Mesh(num_vertices=4, num_faces=2, has=['confidence'])"
+
+
 def test_closest_points_reproduce_the_distance():
     points = np.random.default_rng(3).uniform(-2, 2, (300, 3))
     found = glint.closest_points(CUBE_V, CUBE_F, points)
