@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "colmap/model.h"
 #include "colmap/project.h"
 #include "colmap/scene.h"
@@ -30,6 +32,8 @@ struct Expected {
   size_t num_images, num_points, num_observations;  // as COLMAP's model_analyzer counts them
   double error_px;
 };
+
+void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.project; }
 
 class SoundProject : public testing::TestWithParam<Expected> {};
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "core/error.h"
 #include "tests/colmap/test_model.h"
@@ -410,6 +411,8 @@ struct Known {
   std::string file;
   size_t num_vertices, num_faces;
 };
+
+void PrintTo(const Known& known, std::ostream* out) { *out << known.file; }
 
 class KnownMesh : public testing::TestWithParam<Known> {};
 
