@@ -24,7 +24,7 @@ export function buildHeader(data) {
     [determined === 1 ? 'light' : 'lights', count(determined)],
     ['triangles', count(report.mesh.faces)],
     ['iterations', count(report.refine.iterations.length)],
-    ['time', seconds(run.total_seconds)],
+    [run.stages.some((s) => s.reused) ? 'this time; the rest was kept' : 'time', seconds(run.total_seconds)],
   ];
   byId('facts').replaceChildren(...facts.map(([name, value]) => el('div', {}, el('dt', {}, name), el('dd', {}, value))));
 }
