@@ -57,21 +57,25 @@ std::optional<double> FindContact(const Scene& scene, const MaskSet& set, int ow
     }
   }
   if (least >= kFar) return std::nullopt;
-  for (double finer = step / 2; finer > step / (1 << kFinerSteps); finer /= 2)
+  for (int halvings = 1; halvings < kFinerSteps; ++halvings) {
+    const double finer = std::ldexp(step, -halvings);
     for (double t : {depth - finer, depth + finer})
       if (const auto d = at(t); d && *d < least) {
         least = *d;
         depth = t;
       }
+  }
   // The ends lie between two steps: OutsideBy grows no faster than the way.
   const auto edge = [&](double sign) {
     double t = depth;
-    for (double width = step; width > step / 16; width /= 2)
+    for (int halvings = 0; halvings < 4; ++halvings) {
+      const double width = std::ldexp(step, -halvings);
       while (t + sign * width > begin && t + sign * width < end) {
         const auto d = at(t + sign * width);
         if (!d || *d > least + slack) break;
         t += sign * width;
       }
+    }
     return t;
   };
   sample.depth = depth;
