@@ -52,6 +52,8 @@ constexpr double kRadians = M_PI / 180;
 constexpr double kCurvatureChange = 0.1;
 // What of that is left once the current surface's own offset is taken off.
 constexpr double kCorrected = 0.3;
+// How far the surface may be from the middle of a chord: times its sag, and of the diagonal beyond that.
+constexpr double kSagShare = 2, kSheetRel = 0.01, kSheetCosine = 0.5;
 // Above this many contacts the exact covariance gives way to its diagonal approximation.
 constexpr size_t kMaxExactCovariance = 4000;
 
@@ -68,17 +70,32 @@ std::optional<double> SurfaceOffset(const Eigen::Vector3d& s_a, const Eigen::Vec
   return (m_a + m_b).normalized().dot(s_b - s_a);
 }
 
+// Whether the surface follows the chord between two places on it with these normals, as far as its bend lets it: a
+// chord of length c whose normals differ by θ sags by cθ/8, and the normals on the way lie between them.
+bool OnOneSheet(const SurfaceQuery& surface, const Eigen::Vector3d& a, const Eigen::Vector3d& normal_a,
+                const Eigen::Vector3d& b, const Eigen::Vector3d& normal_b, double diagonal) {
+  const double angle = std::acos(std::clamp(normal_a.dot(normal_b), -1.0, 1.0));
+  const double reach = kSagShare * (b - a).norm() * angle / 8 + kSheetRel * diagonal;
+  const Eigen::Vector3d mean_normal = (normal_a + normal_b).normalized();
+  for (const double t : {0.25, 0.5, 0.75}) {
+    const auto near = surface.closest.Find(a + t * (b - a), reach);
+    if (!near || FaceNormal(surface.mesh, near->face).dot(mean_normal) < kSheetCosine) return false;
+  }
+  return true;
+}
+
 class Solver {
  public:
   Solver(const std::vector<SurfacePoint>& points, double diagonal, const std::vector<bool>& solve_lights,
          const BundleOptions& options, std::vector<Contact>& contacts, std::vector<Light>& lights,
-         const std::vector<Light>& known_lights)
+         const std::vector<Light>& known_lights, const SurfaceQuery* surface)
       : points_(points),
         diagonal_(diagonal),
         solve_lights_(solve_lights),
         options_(options),
         lights_(lights),
-        given_lights_(known_lights) {
+        given_lights_(known_lights),
+        surface_(surface) {
     for (Contact& contact : contacts)
       if (contact.accepted) contacts_.push_back(&contact);
   }
@@ -124,6 +141,7 @@ class Solver {
   const BundleOptions& options_;
   std::vector<Light>& lights_;
   const std::vector<Light> given_lights_;
+  const SurfaceQuery* const surface_;
   std::vector<Contact*> contacts_;
   std::vector<const Contact*> start_order_;
   std::vector<Chord> chords_, point_chords_;
@@ -142,7 +160,13 @@ void Solver::BuildChords() {
   NeighborOptions near;
   near.count = options_.neighbors;
   near.max_normal_angle = options_.max_normal_angle_deg * kRadians;
-  const auto pairs = UniquePairs(SectorNeighbors(positions, normals, positions, normals, near));
+  auto pairs = UniquePairs(SectorNeighbors(positions, normals, positions, normals, near));
+  if (surface_)
+    std::erase_if(pairs, [&](const auto& pair) {
+      const auto& [i, j] = pair;
+      return !OnOneSheet(*surface_, contacts_[i]->SurfacePosition(), normals[i], contacts_[j]->SurfacePosition(),
+                         normals[j], diagonal_);
+    });
   // The peak's uncertainty in the image becomes one of the normal through the curvature that the chords show.
   std::vector<std::vector<double>> curvatures(contacts_.size());
   for (const auto& [i, j] : pairs) {
@@ -174,6 +198,9 @@ void Solver::BuildChords() {
   const auto near_points = SectorNeighbors(positions, normals, point_positions, point_normals, near);
   for (size_t i = 0; i < near_points.size(); ++i)
     for (int p : near_points[i]) {
+      if (surface_ && !OnOneSheet(*surface_, contacts_[i]->SurfacePosition(), normals[i], points_[p].surface_position,
+                                  points_[p].normal, diagonal_))
+        continue;
       const double length = (positions[i] - points_[p].position).norm();
       const double angle2 = 2 * (1 - std::clamp(normals[i].dot(points_[p].normal), -1.0, 1.0));
       const auto offset = SurfaceOffset(contacts_[i]->SurfacePosition(), contacts_[i]->surface_normal,
@@ -352,12 +379,13 @@ void Solver::Finish(BundleSummary& summary) {
 BundleSummary SolveBundle(const std::vector<SurfacePoint>& points, double diagonal,
                           const std::vector<bool>& solve_lights, const BundleOptions& options,
                           std::vector<Contact>& contacts, std::vector<Light>& lights,
-                          const std::vector<Light>* known_lights) {
+                          const std::vector<Light>* known_lights, const SurfaceQuery* surface) {
   GLINT_CHECK_EQ(solve_lights.size(), lights.size());
   GLINT_CHECK(!known_lights || known_lights->size() == lights.size());
   GLINT_CHECK_GT(diagonal, 0);
   for (const Contact& contact : contacts) GLINT_CHECK_LT(contact.light, static_cast<int>(lights.size()));
-  Solver solver(points, diagonal, solve_lights, options, contacts, lights, known_lights ? *known_lights : lights);
+  Solver solver(points, diagonal, solve_lights, options, contacts, lights, known_lights ? *known_lights : lights,
+                surface);
   solver.RememberOrder();
   return solver.Run();
 }

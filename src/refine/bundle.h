@@ -8,6 +8,7 @@
 
 #include "constraints/contact.h"
 #include "core/options.h"
+#include "geometry/closest_point.h"
 #include "light/light.h"
 
 namespace glint {
@@ -50,12 +51,20 @@ struct BundleSummary {
   std::string message;  // Ceres' brief report of the last solve
 };
 
+// The current surface, to ask for its nearest place.
+struct SurfaceQuery {
+  explicit SurfaceQuery(const TriangleMesh& surface) : mesh(surface), closest(surface) {}
+  const TriangleMesh& mesh;
+  ClosestPointQuery closest;
+};
+
 // Moves `contacts` (depth, sigma_depth, accepted) and, where solve_lights[k] is set, `lights[k]`. `diagonal` is the
 // object's bounding-box diagonal in world units. A solved light with a sigma is held to `known_lights` (null: to where
-// it starts), so that solving again and again does not let it drift. Deterministic.
+// it starts), so that solving again and again does not let it drift. Chords that leave `surface`, the current one, are
+// not drawn: what they would tie lies on either side of a gap or a fold. Deterministic.
 BundleSummary SolveBundle(const std::vector<SurfacePoint>& points, double diagonal,
                           const std::vector<bool>& solve_lights, const BundleOptions& options,
                           std::vector<Contact>& contacts, std::vector<Light>& lights,
-                          const std::vector<Light>* known_lights = nullptr);
+                          const std::vector<Light>* known_lights = nullptr, const SurfaceQuery* surface = nullptr);
 
 }  // namespace glint

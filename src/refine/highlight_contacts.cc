@@ -49,11 +49,12 @@ double HighlightContacts::Follow(const TriangleMesh& surface, const LevelSet& fi
                                  double max_incidence, const std::vector<SurfacePoint>& points,
                                  const BundleOptions& options, BundleSummary& summary) {
   const RayCaster caster(surface);
+  const SurfaceQuery query(surface);
   std::vector<double> surface_motion = LayOn(caster, field, reliable_normals, max_incidence);
   MeasureLobes(surface, caster);
   std::vector<double> before, motion;
   for (const Contact& contact : contacts_) before.push_back(contact.depth);
-  summary = SolveBundle(points, 1.0, solve_lights_, options, contacts_, lights_, &known_lights_);
+  summary = SolveBundle(points, 1.0, solve_lights_, options, contacts_, lights_, &known_lights_, &query);
   for (size_t i = 0; i < contacts_.size(); ++i)
     if (contacts_[i].accepted) motion.push_back(std::abs(contacts_[i].depth - before[i]));
   return std::max(Median(motion), Median(surface_motion));

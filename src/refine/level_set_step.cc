@@ -56,6 +56,9 @@ namespace {
 // A contact explains what faces as it does, not what lies around a rim: cosines of 20 and 60 degrees.
 constexpr double kSameSide = 0.94, kOtherSide = 0.5;
 
+// Where the voxels do not carry more than the seed, it is held to a quarter of one.
+constexpr double kHeldSigmaVoxels = 0.25, kHeldLengthVoxels = 2;
+
 // m of DESIGN 3.4 at a place with a normal: near 1 where no contact reaches, near 0 where one does.
 float SeedTrust(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, const std::vector<OrientedPoint>& contacts) {
   double explained = 0;
@@ -96,6 +99,7 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
   static const std::vector<OrientedPoint> kNone;
   const std::vector<OrientedPoint>& contacts = options.highlight_weight > 0 ? input.contacts : kNone;
   const double mu = 1 / std::pow(options.seed_sigma_rel * options.seed_length_rel, 2);
+  const double held = 1 / std::pow(kHeldSigmaVoxels * kHeldLengthVoxels * h * h, 2);
   const double background = input.seed.half_width_voxels() * input.seed.voxel_size();
   ParallelFor(band.size(), 1 << 12, [&](size_t i) {
     const Eigen::Vector3d x = band.Position(i);
@@ -103,10 +107,11 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
     const double length = g.norm();
     const Eigen::Vector3d normal = length > 1e-12 ? Eigen::Vector3d(g / length) : Eigen::Vector3d::Zero();
     weights.n[i] = normal.cast<float>();
-    const float trust = SeedTrust(x, normal, contacts);
+    const bool hold = input.unresolved && input.unresolved->Near(x);
+    const double pull = hold ? held : mu * SeedTrust(x, normal, contacts);
     const double value = input.seed.Value(x);
     const bool known = std::abs(value) < background - 2 * h;
-    weights.pull[i] = known ? static_cast<float>(mu * area * trust) : 0;
+    weights.pull[i] = known ? static_cast<float>(area * pull) : 0;
     weights.pull_target[i] = static_cast<float>(value);
     if (input.bend_like_seed)
       weights.reference[i] = known ? SmoothValue(input.seed, x) : std::numeric_limits<float>::quiet_NaN();

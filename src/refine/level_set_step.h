@@ -11,6 +11,7 @@
 #include "core/options.h"
 #include "refine/band_operator.h"
 #include "refine/surface_constraints.h"
+#include "refine/thickness.h"
 #include "sdf/level_set.h"
 
 namespace glint {
@@ -54,6 +55,7 @@ struct StepInput {
   const std::vector<OrientedPoint>& outline;  // where the surface touches rays through outlines
   inline static const std::vector<Tilt> kNoTilts = {};
   const std::vector<Tilt>& tilts = kNoTilts;  // of the normals, from shading and normal maps
+  const Unresolved* unresolved = nullptr;     // where the seed is held; null: nowhere
 };
 
 LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options, StepSummary* summary);

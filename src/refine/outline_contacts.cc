@@ -1,7 +1,10 @@
 #include "refine/outline_contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <optional>
 
 #include "core/parallel.h"
@@ -13,6 +16,9 @@ namespace {
 constexpr double kSigmaNormal = 3 * M_PI / 180;
 constexpr double kLeastSigma = 0.0005;
 constexpr double kReach = 0.02;  // decides the footprint over which the normal is taken
+// Of places on the outlines: how well they are known along their rays, how far apart, and across their rays (outlines
+// in photographs are a pixel or so off). Fractions of the diagonal.
+constexpr double kMaxInterval = 0.05, kCell = 0.01, kPlaceSigma = 0.002;
 // The ray is looked at in steps of so many voxels.
 constexpr double kStepVoxels = 0.5;
 
@@ -58,6 +64,30 @@ std::vector<OrientedPoint> OutlineContacts(const std::vector<OutlineRay>& outlin
   for (const std::optional<OrientedPoint>& p : found)
     if (p) contacts.push_back(*p);
   return contacts;
+}
+
+std::vector<SurfacePoint> KnownOutlinePlaces(const Scene& scene, const std::vector<OutlineSample>& outline,
+                                             const UnitFrame& frame) {
+  struct Known {
+    double interval;
+    SurfacePoint place;
+  };
+  std::map<std::array<int64_t, 3>, Known> cells;
+  for (const OutlineSample& s : outline) {
+    const double interval = frame.scale * (s.far - s.near);
+    if (interval > kMaxInterval) continue;
+    SurfacePoint p;
+    p.position = frame.FromWorld(scene.views[s.view].Center() + s.depth * s.ray);
+    p.normal = s.normal;
+    p.sigma = std::max(frame.scale * s.sigma, kPlaceSigma);
+    std::array<int64_t, 3> cell;
+    for (int k = 0; k < 3; ++k) cell[k] = static_cast<int64_t>(std::floor(p.position[k] / kCell));
+    const auto [it, fresh] = cells.try_emplace(cell, Known{interval, p});
+    if (!fresh && interval < it->second.interval) it->second = {interval, p};
+  }
+  std::vector<SurfacePoint> places;
+  for (const auto& [cell, known] : cells) places.push_back(known.place);
+  return places;
 }
 
 }  // namespace glint

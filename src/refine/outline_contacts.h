@@ -4,8 +4,12 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "colmap/scene.h"
+#include "refine/bundle.h"
+#include "refine/normalized.h"
 #include "refine/surface_constraints.h"
 #include "sdf/level_set.h"
+#include "silhouette/outline.h"
 
 namespace glint {
 
@@ -19,5 +23,10 @@ struct OutlineRay {
 // whose nearest place is off the band, or at an end of what the other views leave room for, are left out. Lengths in
 // units of the object's diagonal.
 std::vector<OrientedPoint> OutlineContacts(const std::vector<OutlineRay>& outline, const LevelSet& surface);
+
+// Where the outlines themselves show the surface, with its normal: the samples that are known well along their rays,
+// one a cell of 1 % of the diagonal, in units of the diagonal. Without their foot points.
+std::vector<SurfacePoint> KnownOutlinePlaces(const Scene& scene, const std::vector<OutlineSample>& outline,
+                                             const UnitFrame& frame);
 
 }  // namespace glint

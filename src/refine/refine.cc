@@ -17,9 +17,11 @@
 #include "refine/highlight_contacts.h"
 #include "refine/normalized.h"
 #include "refine/outline_contacts.h"
+#include "refine/thickness.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
 #include "sdf/rebuild.h"
+#include "seed/build_seed.h"
 
 namespace glint {
 
@@ -31,6 +33,7 @@ constexpr double kSeedMarginVoxels = 5;
 constexpr double kMaxWayVoxels = 24;  // for memory's sake
 // Standard deviations change slowly over the surface.
 constexpr double kConfidenceVoxelRel = 1.0 / 64;
+constexpr double kVoxelsAWall = 3;  // to carry it
 // Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
 constexpr double kMinPieceShare = 0.005;
 
@@ -65,6 +68,9 @@ class Refiner {
     seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
     seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
     surface_ = seed_;
+    for (const auto& [name, values] : input.seed.scalars)
+      for (size_t v = 0; name == kFineScalar && v < values.size(); ++v)
+        if (values[v] > 0) fine_.push_back(seed_.vertices[v]);
     summary_.bends_like_seed = options.bend != "flat";
     MakePoints();
     MakeOutline();
@@ -75,9 +81,10 @@ class Refiner {
     summary_.num_highlights = static_cast<int>(input_.highlights.size());
     summary_.num_points = static_cast<int>(points_.size());
     size_t steps = 0;
-    for (int level = 0; level < options_.levels; ++level) steps += StepsOfIteration(level) * MaxIterations();
+    const int first_level = FirstLevel();
+    for (int level = first_level; level < options_.levels; ++level) steps += StepsOfIteration(level) * MaxIterations();
     progress_.Begin("refine", steps);
-    for (int level = 0; level < options_.levels; ++level) {
+    for (int level = first_level; level < options_.levels; ++level) {
       const double voxel = options_.voxel_rel * std::pow(2.0, options_.levels - 1 - level);
       const bool finished = RunLevel(voxel, StepsOfIteration(level));
       if (level + 1 == options_.levels) summary_.converged = finished;
@@ -92,12 +99,14 @@ class Refiner {
   void MakeOutline();
   // Four times the surface takes four times as long: the steps of progress are weighed so.
   static size_t StepsOfIteration(int level) { return size_t{1} << (2 * level); }
+  int FirstLevel();
   size_t MaxIterations() const { return static_cast<size_t>(options_.max_iterations); }
   bool RunLevel(double voxel, size_t progress_steps);
   LevelSet SeedField(double voxel, double half_width_voxels);
   LevelSet Step(const LevelSet& seed_field, bool undecided, StepSummary& summary);
   void TakeSurface(const LevelSet& stepped, const SdfOptions& sdf);
   void UpdatePoints(const LevelSet& field);
+  std::vector<SurfacePoint> KnownPlaces(const LevelSet& field) const;
   void MeasureConfidence();
   void Finish(RefineResult& result);
 
@@ -113,9 +122,27 @@ class Refiner {
   std::vector<SurfacePoint> points_;
   std::vector<Eigen::Matrix3d> point_covariance_;
   std::vector<OutlineRay> outline_;
+  std::vector<SurfacePoint> rim_;
+  std::vector<Eigen::Vector3d> fine_;  // of the seed, finer than it is elsewhere
   PhotoTilts tilts_;
   RefineSummary summary_;
 };
+
+// The coarsest level whose voxels carry the seed's walls; coarser ones would lose them.
+int Refiner::FirstLevel() {
+  if (fine_.empty()) return 0;
+  const double thinnest = ThinnestWalls(seed_);
+  int level = 0;
+  while (level + 1 < options_.levels &&
+         kVoxelsAWall * options_.voxel_rel * std::pow(2.0, options_.levels - 1 - level) > thinnest)
+    ++level;
+  if (kVoxelsAWall * options_.voxel_rel > thinnest)
+    summary_.warnings.push_back(
+        fmt::format("some walls are {:.2g} of the diagonal thick, which voxels of {:.2g} hardly carry: give "
+                    "--set refine.voxel_rel={:.2g}",
+                    thinnest, options_.voxel_rel, thinnest / kVoxelsAWall));
+  return level;
+}
 
 HighlightContacts Refiner::MakeHighlights() const {
   std::vector<Light> lights;
@@ -146,6 +173,7 @@ void Refiner::MakePoints() {
 }
 
 void Refiner::MakeOutline() {
+  rim_ = KnownOutlinePlaces(input_.scene, input_.outline, frame_);
   if (!options_.use_outlines) return;
   for (const OutlineSample& sample : input_.outline)
     outline_.push_back({frame_.FromWorld(input_.scene.views[sample.view].Center()), sample.ray, sample.normal,
@@ -166,17 +194,33 @@ void Refiner::UpdatePoints(const LevelSet& field) {
   }
 }
 
+// What anchors the bundle: the sparse points, and where the outlines show the surface.
+std::vector<SurfacePoint> Refiner::KnownPlaces(const LevelSet& field) const {
+  std::vector<SurfacePoint> places = points_;
+  for (SurfacePoint p : rim_) {
+    const Eigen::Vector3d g = field.Gradient(p.position);
+    if (g.norm() < 0.5) continue;  // off the band: the surface is elsewhere
+    p.surface_position = p.position - field.Value(p.position) * g.normalized();
+    places.push_back(p);
+  }
+  return places;
+}
+
 // A faired seed bends much as the object does, a raw mesh is rough: the first step of each level
 // tells which it is, at the roughness that its voxels resolve.
 LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& summary) {
-  const std::vector<OrientedPoint> contacts = highlights_.Oriented();
+  const Unresolved unresolved(surface_, field_, fine_);
+  std::vector<OrientedPoint> contacts = highlights_.Oriented();
+  std::erase_if(contacts, [&](const OrientedPoint& p) { return unresolved.Near(p.position); });
+  std::vector<Tilt> tilts = tilts_.tilts();
+  std::erase_if(tilts, [&](const Tilt& t) { return unresolved.Near(t.position); });
   const std::vector<OrientedPoint> outline = OutlineContacts(outline_, field_);
   const double area = SurfaceArea(surface_);
   if (options_.method == "flow")
-    return FlowStep({field_, seed_field, false, area, contacts, points_, outline, tilts_.tilts()}, options_.flow,
+    return FlowStep({field_, seed_field, false, area, contacts, points_, outline, tilts, &unresolved}, options_.flow,
                     &summary);
   const auto step = [&](bool bend_like_seed, StepSummary& report) {
-    return VariationalStep({field_, seed_field, bend_like_seed, area, contacts, points_, outline, tilts_.tilts()},
+    return VariationalStep({field_, seed_field, bend_like_seed, area, contacts, points_, outline, tilts, &unresolved},
                            options_.level_set, &report);
   };
   LevelSet stepped = step(summary_.bends_like_seed, summary);
@@ -210,10 +254,10 @@ bool Refiner::RunLevel(double voxel, size_t progress_steps) {
     iteration.voxel_rel = voxel;
     if (field_.empty()) field_ = MeshToLevelSet(surface_, voxel, sdf);
     UpdatePoints(field_);
-    iteration.contact_motion_voxels =
-        highlights_.Follow(surface_, field_, !summary_.iterations.empty(),
-                           options_.contacts.max_incidence_deg * kRadians, points_, options_.bundle, iteration.bundle) /
-        voxel;
+    iteration.contact_motion_voxels = highlights_.Follow(surface_, field_, !summary_.iterations.empty(),
+                                                         options_.contacts.max_incidence_deg * kRadians,
+                                                         KnownPlaces(field_), options_.bundle, iteration.bundle) /
+                                      voxel;
     iteration.contacts_on_surface = highlights_.num_on_surface();
     tilts_.LookAgain(surface_, highlights_.lights(), !summary_.iterations.empty());
     const LevelSet stepped = Step(seed_field, k == 0, iteration.step);

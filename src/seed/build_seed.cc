@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "geometry/closest_point.h"
+#include "highlights/sight_colors.h"
+#include "sdf/csg.h"
+#include "seed/outline_rim.h"
 #include "seed/rim_points.h"
 #include "seed/shape.h"
 #include "seed/subdivide.h"
+#include "stereo/hollows.h"
 
 namespace glint {
 namespace {
@@ -19,7 +24,11 @@ constexpr int kOutlinePasses = 2;       // found outlines are better where the s
 // are a pixel or so off everywhere, which points are not.
 constexpr double kGoodWithout = 0.75;  // share that fits: what points alone explain so well they know better
 constexpr double kWorthwhile = 0.85;
-constexpr int kSubdivisions = 2;  // of the smooth surface: its facets must not show at the finest voxels
+constexpr size_t kColorViews = 48;
+constexpr size_t kColorMemory = size_t{1} << 29;
+constexpr double kVoxelRel = 0.004;  // of the diagonal: as fine as the smooth surface once divided
+constexpr double kFineRel = 0.003;   // of the diagonal
+constexpr int kSubdivisions = 2;     // of the smooth surface: its facets must not show at the finest voxels
 
 double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
   const ClosestPointQuery query(mesh);
@@ -72,17 +81,17 @@ struct Made {
 // Outlines around the shape that stands so far, and the shape of points and outlines, which takes its place if it fits
 // them better. False if there is nothing more to gain.
 bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOptions& options, const ImageSource& images,
-                    Made& made, SeedSummary& s, std::vector<OutlineSample>& outline, Progress& progress) {
+                    Made& made, SeedSummary& s, Silhouettes& silhouettes, Progress& progress) {
   const ObjectChoice& choice = made.choice;
   const auto ground = choice.ground ? std::optional(choice.ground->plane) : std::nullopt;
   SilhouetteSummary found;
-  std::vector<OutlineSample> next =
-      FindSilhouettes(scene, images, {made.shape.smooth, Sides(choice), ground}, options.outlines, &found, progress)
-          .outline();
+  Silhouettes next =
+      FindSilhouettes(scene, images, {made.shape.smooth, Sides(choice), ground}, options.outlines, &found, progress);
   const bool first = s.outlines.source.empty();
-  if (first || !next.empty()) s.outlines = found;
-  if (next.empty()) return false;
-  outline = std::move(next);
+  if (first || !next.outline().empty()) s.outlines = found;
+  if (next.outline().empty()) return false;
+  silhouettes = std::move(next);
+  const std::vector<OutlineSample>& outline = silhouettes.outline();
   std::vector<Eigen::Vector3d> points;
   for (size_t i = 0; i < choice.role.size(); ++i)
     if (choice.role[i] == PointRole::kObject) points.push_back(scene.points[i].position);
@@ -103,6 +112,39 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   return found.source == "photographs";  // masks do not change
 }
 
+// What comes of a finer change to the surface, unless it tears tunnels: then what was found fits together nowhere.
+TriangleMesh UnlessTorn(const TriangleMesh& before, TriangleMesh after) {
+  return after.empty() || GenusOf(after) > GenusOf(before) ? before : after;
+}
+
+// Rims that the smooth surface is too stiff for, by the outlines.
+TriangleMesh WithRim(const Scene& scene, const Silhouettes& silhouettes, const TriangleMesh& smooth) {
+  const double voxel = kVoxelRel * Diagonal(smooth);
+  const TriangleMesh rim = MissingRim(scene, silhouettes, smooth, voxel);
+  return rim.empty() ? smooth : UnlessTorn(smooth, LargestPiece(Union(smooth, rim, voxel)));
+}
+
+// Hollows that it spans, which nothing but their colours shows, are taken out of it.
+TriangleMesh WithoutHollows(const Scene& scene, const SparseSurface& sparse, const TriangleMesh& smooth,
+                            const ImageSource& images, SeedSummary& s, Progress& progress) {
+  std::vector<Eigen::Vector3d> known;
+  for (const int point : sparse.scene_point)
+    if (point >= 0) known.push_back(scene.points[point].position);
+  const SightColors colors(images, kColorViews, kColorMemory, progress);
+  const TriangleMesh hollows = FindHollows(scene, colors, smooth, known, &s.hollows, progress);
+  if (hollows.empty()) return smooth;
+  return UnlessTorn(smooth, LargestPiece(Difference(smooth, hollows, kVoxelRel * Diagonal(smooth))));
+}
+
+// Where a surface is not the faired one.
+void MarkFine(const TriangleMesh& faired, TriangleMesh& mesh) {
+  const ClosestPointQuery query(faired);
+  const double moved = kFineRel * Diagonal(mesh);
+  std::vector<float> fine(mesh.vertices.size());
+  ParallelFor(fine.size(), 256, [&](size_t v) { fine[v] = query.Find(mesh.vertices[v], moved) ? 0.0F : 1.0F; });
+  mesh.scalars.emplace_back(kFineScalar, std::move(fine));
+}
+
 }  // namespace
 
 void SeedOptions::Visit(OptionVisitor& v) {
@@ -111,6 +153,9 @@ void SeedOptions::Visit(OptionVisitor& v) {
   VisitSection(v, "surface", "The visibility-consistent surface of the points", surface);
   VisitSection(v, "outlines", "The object's outlines, where points are missing", outlines);
   VisitSection(v, "smooth", "The smooth surface that refinement starts on", smooth);
+  v.Field({.name = "open_hollows",
+           .help = "take hollows (a mouth, a bowl) out of the smooth surface, by the photographs' colours"},
+          open_hollows);
 }
 
 std::string SeedSummary::BriefReport() const {
@@ -123,6 +168,8 @@ std::string SeedSummary::BriefReport() const {
         ", {:.0f} % fit the surface of the points alone{}", 100 * outline_fit_before,
         outlines_used ? fmt::format(", {:.0f} % the seed, with {} points on the rim", 100 * outline_fit, num_rim_points)
                       : ", which is kept");
+  if (hollows_opened)
+    text += fmt::format("; {} hollow(s) opened by the colours of what is in them", hollows.num_hollows);
   for (const std::string& warning : warnings) text += "; " + warning;
   return text;
 }
@@ -150,8 +197,10 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   Made alone = made;  // before points are taken out of it
   made.shape = MakeShape(scene, made.reliability, made.choice, {}, options.surface, options.smooth, progress);
   alone.shape = made.shape;
+  Silhouettes silhouettes;
   for (int pass = 0; pass < kOutlinePasses && images && !made.shape.sparse.mesh.empty(); ++pass)
-    if (!FollowOutlines(scene, alone, options, *images, made, s, out.outline, progress)) break;
+    if (!FollowOutlines(scene, alone, options, *images, made, s, silhouettes, progress)) break;
+  out.outline = silhouettes.outline();
   const Shape& shape = made.shape;
   reliability = std::move(made.reliability);
   choice = std::move(made.choice);
@@ -164,7 +213,14 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     return out;
   }
   out.mesh = shape.sparse.mesh;
-  out.smooth = SubdivideSmoothly(shape.smooth, kSubdivisions);
+  const TriangleMesh faired = SubdivideSmoothly(shape.smooth, kSubdivisions);
+  out.smooth = s.outlines_used ? WithRim(scene, silhouettes, faired) : faired;
+  if (images && options.open_hollows) {
+    const size_t before = out.smooth.vertices.size();
+    out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, *images, s, progress);
+    s.hollows_opened = out.smooth.vertices.size() != before;
+  }
+  if (out.smooth.vertices.size() != faired.vertices.size()) MarkFine(faired, out.smooth);
   for (int point : shape.sparse.scene_point)
     if (point >= 0) out.point_used[point] = 1;
   out.fate = Fates(reliability, choice, out.point_used);

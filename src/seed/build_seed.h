@@ -18,6 +18,7 @@
 #include "seed/visibility_cut.h"
 #include "silhouette/outline.h"
 #include "silhouette/silhouettes.h"
+#include "stereo/hollows.h"
 
 namespace glint {
 
@@ -27,6 +28,7 @@ struct SeedOptions {
   CutOptions surface;
   SilhouetteOptions outlines;
   FairOptions smooth;
+  bool open_hollows = true;
 
   void Visit(OptionVisitor& v);
 };
@@ -40,6 +42,9 @@ enum class PointFate : uint8_t {
   kUnreliable,  // short track, large error, narrow angle, isolated
   kVirtual,
 };
+
+// The name of `smooth`'s attribute that is 1 where it is finer than fairing makes it: rims and hollows.
+inline constexpr const char* kFineScalar = "fine";
 
 struct SeedResult {
   TriangleMesh mesh;                   // the sparse surface as it is: closed, oriented outward, one piece
@@ -64,6 +69,8 @@ struct SeedSummary {
   double outline_fit_before = 0;  // share of the outlines that the surface of the points alone agrees with
   double outline_fit = 0;         // and the one with the rim's points
   size_t num_rim_points = 0;
+  HollowSummary hollows;
+  bool hollows_opened = false;
   std::vector<std::string> warnings;
 
   std::string BriefReport() const;

@@ -39,18 +39,6 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
   return attachments;
 }
 
-TriangleMesh LargestPiece(const TriangleMesh& mesh) {
-  const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));
-  size_t largest = 0;
-  for (size_t k = 1; k < pieces.list.size(); ++k)
-    if (pieces.list[k].volume > pieces.list[largest].volume) largest = k;
-  TriangleMesh out = mesh;
-  out.faces.clear();
-  for (size_t f = 0; f < mesh.faces.size(); ++f)
-    if (pieces.of_face[f] == largest) out.faces.push_back(mesh.faces[f]);
-  return WithoutUnusedVertices(out);
-}
-
 // Fairs ever more stiffly until the surface does not pass through itself; if it always does, takes it by its inside.
 FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
                             const FairContext& context, FairOptions options, bool& folded) {
@@ -87,6 +75,18 @@ bool DropDoubted(const std::vector<Attachment>& attachments, const FairResult& f
 }
 
 }  // namespace
+
+TriangleMesh LargestPiece(const TriangleMesh& mesh) {
+  const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));
+  size_t largest = 0;
+  for (size_t k = 1; k < pieces.list.size(); ++k)
+    if (pieces.list[k].volume > pieces.list[largest].volume) largest = k;
+  TriangleMesh out = mesh;
+  out.faces.clear();
+  for (size_t f = 0; f < mesh.faces.size(); ++f)
+    if (pieces.of_face[f] == largest) out.faces.push_back(mesh.faces[f]);
+  return WithoutUnusedVertices(out);
+}
 
 long GenusOf(const TriangleMesh& mesh) {
   const long euler = static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.faces.size()) / 2;

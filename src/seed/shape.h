@@ -27,6 +27,9 @@ struct Shape {
 Shape MakeShape(const Scene& scene, PointReliability& reliability, ObjectChoice& choice, const RimEvidence& rim,
                 const CutOptions& cut, const FairOptions& fair, Progress& progress);
 
+// The connected piece with the most volume.
+TriangleMesh LargestPiece(const TriangleMesh& mesh);
+
 // Sum over the pieces; the mesh is closed and manifold.
 long GenusOf(const TriangleMesh& mesh);
 

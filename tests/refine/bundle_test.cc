@@ -9,6 +9,7 @@
 
 #include "refine/chord_residual.h"
 #include "refine/neighbors.h"
+#include "tests/support/ball_mesh.h"
 #include "tests/support/ellipsoid_scene.h"
 
 namespace glint {
@@ -67,6 +68,36 @@ TEST(ChordResidual, JacobiansAgreeWithFiniteDifferences) {
               .Probe(point_parameters, 1e-5, &results))
           << results.error_log;
     }
+}
+
+// Two balls beside each other: between them there is no surface for chords to follow.
+TEST(SolveBundle, ChordsStayOnOneSheet) {
+  const Ellipsoid ball{{1, 1, 1}};
+  const std::vector<Light> lights = {DistantLight(0.2, 0.1, 1)};
+  std::vector<Contact> contacts = MakeEllipsoidContacts(ball, lights, 40, 3).contacts;
+  const size_t count = contacts.size();
+  for (size_t i = 0; i < count; ++i) {
+    contacts.push_back(contacts[i]);
+    contacts.back().origin.x() += 2.5;
+  }
+  for (Contact& c : contacts) c.prior_depth = c.depth;
+  TriangleMesh balls = testing::BallMesh({0, 0, 0}, 1, 40);
+  const TriangleMesh second = testing::BallMesh({2.5, 0, 0}, 1, 40);
+  const int first = static_cast<int>(balls.vertices.size());
+  balls.vertices.insert(balls.vertices.end(), second.vertices.begin(), second.vertices.end());
+  for (const Eigen::Vector3i& f : second.faces) balls.faces.emplace_back(f + Eigen::Vector3i::Constant(first));
+  const SurfaceQuery surface(balls);
+  BundleOptions options;
+  options.rounds = 1;
+  const auto chords = [&](std::vector<Contact> some, const SurfaceQuery* on) {
+    std::vector<Light> fixed = lights;
+    return SolveBundle({}, Diagonal(balls), {false}, options, some, fixed, nullptr, on).num_chords;
+  };
+  const int one = chords({contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(count)}, nullptr);
+  const int off_surface = chords(contacts, nullptr) - 2 * one, left = chords(contacts, &surface) - 2 * one;
+  EXPECT_GT(off_surface, one / 10);  // across the gap
+  EXPECT_LE(left, off_surface / 10);
+  EXPECT_GT(left, -one / 10);  // and those on either ball stay
 }
 
 TEST(SectorNeighbors, SpreadOverTheTangentPlaneAndNeverThemselves) {
