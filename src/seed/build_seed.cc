@@ -26,9 +26,10 @@ constexpr double kGoodWithout = 0.75;  // share that fits: what points alone exp
 constexpr double kWorthwhile = 0.85;
 constexpr size_t kColorViews = 48;
 constexpr size_t kColorMemory = size_t{1} << 29;
-constexpr double kVoxelRel = 0.004;  // of the diagonal: as fine as the smooth surface once divided
-constexpr double kFineRel = 0.003;   // of the diagonal
-constexpr int kSubdivisions = 2;     // of the smooth surface: its facets must not show at the finest voxels
+constexpr double kVoxelRel = 0.004;   // of the diagonal: as fine as the smooth surface once divided
+constexpr double kLeastTaken = 0.25;  // of the hollows' volume: less, and nothing was opened
+constexpr double kFineRel = 0.003;    // of the diagonal
+constexpr int kSubdivisions = 2;      // of the smooth surface: its facets must not show at the finest voxels
 
 double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
   const ClosestPointQuery query(mesh);
@@ -133,7 +134,10 @@ TriangleMesh WithoutHollows(const Scene& scene, const SparseSurface& sparse, con
   const SightColors colors(images, kColorViews, kColorMemory, progress);
   const TriangleMesh hollows = FindHollows(scene, colors, smooth, known, &s.hollows, progress);
   if (hollows.empty()) return smooth;
-  return UnlessTorn(smooth, LargestPiece(Difference(smooth, hollows, kVoxelRel * Diagonal(smooth))));
+  TriangleMesh opened = UnlessTorn(smooth, LargestPiece(Difference(smooth, hollows, kVoxelRel * Diagonal(smooth))));
+  const double taken = SignedVolume(smooth) - SignedVolume(opened);
+  s.hollows_opened = taken > kLeastTaken * std::abs(SignedVolume(hollows));
+  return s.hollows_opened ? opened : smooth;
 }
 
 // Where a surface is not the faired one.
@@ -215,11 +219,8 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   out.mesh = shape.sparse.mesh;
   const TriangleMesh faired = SubdivideSmoothly(shape.smooth, kSubdivisions);
   out.smooth = s.outlines_used ? WithRim(scene, silhouettes, faired) : faired;
-  if (images && options.open_hollows) {
-    const size_t before = out.smooth.vertices.size();
+  if (images && options.open_hollows)
     out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, *images, s, progress);
-    s.hollows_opened = out.smooth.vertices.size() != before;
-  }
   if (out.smooth.vertices.size() != faired.vertices.size()) MarkFine(faired, out.smooth);
   for (int point : shape.sparse.scene_point)
     if (point >= 0) out.point_used[point] = 1;
