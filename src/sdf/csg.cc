@@ -9,10 +9,21 @@
 namespace glint {
 namespace {
 
+// In voxels about the first mesh: the result does not depend on where the world has its origin, nor on its unit.
+TriangleMesh InVoxels(const TriangleMesh& mesh, const Eigen::Vector3d& center, double voxel) {
+  TriangleMesh out{mesh.vertices, mesh.faces, {}, {}, {}, {}};
+  for (Eigen::Vector3d& x : out.vertices) x = (x - center) / voxel;
+  return out;
+}
+
 template <class Combine>
 TriangleMesh Combined(const TriangleMesh& a, const TriangleMesh& b, double voxel_size_world, const Combine& combine) {
-  const LevelSet first = MeshToLevelSet(a, voxel_size_world), second = MeshToLevelSet(b, voxel_size_world);
-  return ExtractMesh(MakeLevelSet(combine(*first.impl().grid, *second.impl().grid)));
+  const Eigen::Vector3d center = BoundingBox(a).center();
+  const LevelSet first = MeshToLevelSet(InVoxels(a, center, voxel_size_world), 1),
+                 second = MeshToLevelSet(InVoxels(b, center, voxel_size_world), 1);
+  TriangleMesh out = ExtractMesh(MakeLevelSet(combine(*first.impl().grid, *second.impl().grid)));
+  for (Eigen::Vector3d& x : out.vertices) x = center + voxel_size_world * x;
+  return out;
 }
 
 }  // namespace
