@@ -145,7 +145,7 @@ class Carver {
     const int x = static_cast<int>(c % size_[0]), rest = static_cast<int>(c / size_[0]);
     return {x, rest % size_[1], rest / size_[1]};
   }
-  uint32_t Cell_(const std::array<int, 3>& i) const {
+  uint32_t CellAt(const std::array<int, 3>& i) const {
     return static_cast<uint32_t>(i[0] + size_[0] * (i[1] + static_cast<size_t>(size_[1]) * i[2]));
   }
   Eigen::Vector3d Center(uint32_t c) const {
@@ -158,14 +158,15 @@ class Carver {
       i[a] = static_cast<int>(std::floor((x[a] - origin_[a]) / voxel_));
       if (i[a] < 0 || i[a] >= size_[a]) return std::nullopt;
     }
-    return Cell_(i);
+    return CellAt(i);
   }
   template <class Visit>
   void ForNeighbors(uint32_t c, const Visit& visit) const {
     const std::array<int, 3> i = Index(c);
     for (const auto& d : kAround) {
       const std::array<int, 3> n = {i[0] + d[0], i[1] + d[1], i[2] + d[2]};
-      if (n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[0] < size_[0] && n[1] < size_[1] && n[2] < size_[2]) visit(Cell_(n));
+      if (n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[0] < size_[0] && n[1] < size_[1] && n[2] < size_[2])
+        visit(CellAt(n));
     }
   }
 
@@ -259,7 +260,6 @@ class Carver {
       for (const uint32_t c : piece) depth = std::max(depth, depth_[c]);
       if (depth * voxel_ < kMinDepthRel * diagonal_ || ShareAlike(piece) < kMinAlike) continue;
       ++s.num_hollows;
-      s.deepest_world = std::max(s.deepest_world, depth * voxel_);
       for (const uint32_t c : piece) deep[c] = 1;
     }
     return deep;
@@ -327,7 +327,6 @@ TriangleMesh FindHollows(const Scene& scene, const SightColors& colors, const Tr
   if (s.num_known < kFewestKnown) return {};
   const float usual =
       std::max(kLeastSpread, spreads.known[static_cast<size_t>(kKnownShare * static_cast<double>(s.num_known))]);
-  s.known_spread = usual;
   std::vector<uint8_t> open = DoubtfulFaces(spreads.of_face, static_cast<float>(kDoubtful) * usual);
   s.num_doubtful = std::count(open.begin(), open.end(), 1);
   if (s.num_doubtful == 0) return {};

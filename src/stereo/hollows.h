@@ -14,18 +14,16 @@
 namespace glint {
 
 struct HollowSummary {
-  double known_spread = 0;  // of the colours, where the surface is known: nine tenths are below
-  size_t num_known = 0;     // faces that this was measured on
+  size_t num_known = 0;     // faces around known places that enough views see
   size_t num_doubtful = 0;  // faces whose colours the views disagree on
   size_t num_hollows = 0;
-  double deepest_world = 0;
 };
 
-// Faces in connected patches far less alike in the views than the surface around the places in `known` (world) are no
-// surface. From them space is carved inward (Kutulakos & Seitz 2000, on voxels of 1/160 of the diagonal) as long as it
-// looks less alike than nine tenths of the known surface do; walls of other faces stay. The views' median decides, so
-// that highlights, which few views see at one place, do not. The closed mesh of what is carved, which stands out of the
-// surface by some voxels where it begins; empty if there is nothing, or too little of the surface is known.
+// Faces far less alike in the views than the surface around the places in `known` (world) are no surface. From them
+// space is carved inward (Kutulakos & Seitz 2000, on voxels of 1/160 of the diagonal) as long as it looks less alike
+// than nine tenths of the known surface do; walls of other faces stay. The views' median decides, so that highlights,
+// which few views see at one place, do not. The closed mesh of what is carved, which stands out of the surface by some
+// voxels where it begins; empty if there is nothing, or too little of the surface is known.
 TriangleMesh FindHollows(const Scene& scene, const SightColors& colors, const TriangleMesh& mesh,
                          const std::vector<Eigen::Vector3d>& known, HollowSummary* summary = nullptr,
                          Progress& progress = Progress::Silent());
