@@ -63,8 +63,12 @@ std::string ZshAction(const CompletionValue& value) {
 
 std::string ZshFlag(const CompletionFlag& flag) {
   const std::string rest = Quoted(fmt::format("[{}]{}", Escaped(Brief(flag.help), "[]:\\"), ZshAction(flag.value)));
-  if (flag.names.size() == 1) return Quoted("*" + flag.names.front()) + rest;
-  return fmt::format("'*'{{{}}}{}", fmt::join(flag.names, ","), rest);
+  std::vector<std::string> names = flag.names;
+  if (flag.value.kind != Kind::kNone)
+    for (std::string& name : names)
+      if (name.starts_with("--")) name += "=";  // its value may follow it with = or with a space
+  if (names.size() == 1) return Quoted("*" + names.front()) + rest;
+  return fmt::format("'*'{{{}}}{}", fmt::join(names, ","), rest);
 }
 
 std::string FishValue(const CompletionValue& value) {
@@ -111,10 +115,16 @@ std::string BashCompletion(const std::vector<CompletionCommand>& commands) {
          "_glint_words() { mapfile -t COMPREPLY < <(compgen -W \"$1\" -- \"$cur\"); }\n"
          "_glint_files() { mapfile -t COMPREPLY < <(compgen -f -- \"$cur\"); compopt -o filenames 2>/dev/null; }\n"
          "_glint() {\n"
-         "  local cur=\"${COMP_WORDS[COMP_CWORD]}\" command=\"${COMP_WORDS[1]}\"\n"
+         "  local cur=\"${COMP_WORDS[COMP_CWORD]}\" command=\"${COMP_WORDS[1]}\" "
+         "before=\"${COMP_WORDS[COMP_CWORD-1]}\"\n"
          "  COMPREPLY=()\n"
+         // --from=seed is three words to bash, and so is voxel_rel=0.01, which nothing completes.
+         "  if [[ \"$cur\" == = ]]; then cur=; [[ \"$before\" == -* ]] || return\n"
+         "  elif [[ \"$before\" == = ]]; then before=\"${COMP_WORDS[COMP_CWORD-2]}\"; [[ \"$before\" == -* ]] || "
+         "return\n"
+         "  fi\n"
          "  if ((COMP_CWORD == 1)); then _glint_words '" +
-         names + "--help --version'; return; fi\n  case \"$command ${COMP_WORDS[COMP_CWORD-1]}\" in\n" + values +
+         names + "--help --version'; return; fi\n  case \"$command $before\" in\n" + values +
          "  esac\n  if [[ \"$cur\" == -* ]]; then\n    case \"$command\" in\n" + flags +
          "    esac\n    return\n  fi\n  case \"$command\" in\n" + arguments + "  esac\n}\ncomplete -F _glint glint\n";
 }
@@ -132,7 +142,9 @@ std::string ZshCompletion(const std::vector<CompletionCommand>& commands) {
   return "#compdef glint\n# zsh completion for glint; made by `glint completion zsh`.\n_glint() {\n"
          "  local -a commands=(\n" +
          list +
-         "  )\n  if ((CURRENT == 2)); then _describe command commands; return; fi\n"
+         "  )\n  if ((CURRENT == 2)); then\n"
+         "    if [[ $PREFIX == -* ]]; then compadd -- --help --version; else _describe command commands; fi\n"
+         "    return\n  fi\n"
          "  local command=$words[2]\n  shift words\n  ((CURRENT--))\n  case $command in\n" +
          cases +
          "  esac\n}\n"
@@ -140,7 +152,10 @@ std::string ZshCompletion(const std::vector<CompletionCommand>& commands) {
 }
 
 std::string FishCompletion(const std::vector<CompletionCommand>& commands) {
-  std::string script = "# fish completion for glint; made by `glint completion fish`.\ncomplete -c glint -f\n";
+  std::string script =
+      "# fish completion for glint; made by `glint completion fish`.\ncomplete -c glint -f\n"
+      "complete -c glint -n __fish_use_subcommand -l help -d 'Print help'\n"
+      "complete -c glint -n __fish_use_subcommand -l version -d 'Print the version'\n";
   for (const CompletionCommand& command : commands) {
     script += fmt::format("complete -c glint -n __fish_use_subcommand -a {} -d '{}'\n", command.name,
                           Escaped(Brief(command.help), "'\\"));

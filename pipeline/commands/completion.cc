@@ -76,6 +76,11 @@ std::string Script(const std::string& shell, const CLI::App& app) {
 void AddCompletionCommand(CLI::App& app, CommandLine& line) {
   CLI::App* command =
       app.add_subcommand("completion", "Print the script that completes glint's command line in a shell");
+  command->footer(
+      "Switch it on by a line in the shell's own file:\n"
+      "  ~/.bashrc                    source <(glint completion bash)\n"
+      "  ~/.zshrc, after compinit     source <(glint completion zsh)\n"
+      "  ~/.config/fish/config.fish   glint completion fish | source");
   auto shell = std::make_shared<std::string>();
   command->add_option("SHELL", *shell, "Which shell")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->callback(

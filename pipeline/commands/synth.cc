@@ -1,5 +1,6 @@
 // glint synth: a synthetic scene as a complete COLMAP project with its ground truth.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -38,7 +39,9 @@ void AddSynthCommand(CLI::App& app, CommandLine& line) {
   CLI::App* command = app.add_subcommand("synth", "Render a synthetic scene: a COLMAP project with its ground truth");
   auto arguments = std::make_shared<Arguments>();
   const OptionItem* scene = arguments->table.FindField("scene");
-  command->add_option("SCENE", arguments->options.scene, ExpectedValue(*scene))->required();
+  command->add_option("SCENE", arguments->options.scene, "What to render")
+      ->required()
+      ->type_name(fmt::format("{{{}}}", fmt::join(scene->choices, ",")));
   command->add_option("-o,--out", arguments->out, "Folder to write")->required();
   command
       ->add_option_function<std::string>(

@@ -18,7 +18,7 @@ ARROW_RIGHT = "\ue014"
 ESCAPE = "\ue00c"
 MARKUP = "view_<!--<script>alert(1)&amp;.jpg"
 LAPTOP, PHONE = (1366, 850), (390, 844)
-VIEWS = 20
+VIEWS = 14
 
 checks = failures = 0
 
@@ -39,7 +39,7 @@ def make_reports(program, folder):
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     project = f"{folder}/p"
-    code, said = glint(program, "synth", "ellipsoid", "-o", project, "--views", str(VIEWS), "--size", "320x240", "-q")
+    code, said = glint(program, "synth", "ellipsoid", "-o", project, "--views", str(VIEWS), "--size", "240x180", "-q")
     expect(code == 0, f"glint synth ({said.strip()})")
     for images in ("sparse/0/images.txt", "sparse/0/images.bin"):
         path = f"{project}/{images}"

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -170,6 +171,9 @@ TEST_F(FlowTest, BashCompletes) {
   EXPECT_THAT(offers("run --f"), AllOf(HasSubstr("--from"), HasSubstr("--force")));
   EXPECT_EQ(offers("synth --light-kind fl"), "flash\n");
   EXPECT_EQ(offers("completion z"), "zsh\n");
+  EXPECT_EQ(offers("synth h"), "hood\n");
+  EXPECT_EQ(offers("run --from = g"), "gate\n") << "bash takes --from=g apart";
+  EXPECT_EQ(offers("run --set refine.method ="), "\n") << "no files where a value is typed";
   EXPECT_EQ(offers("run '" + Path("c.y") + "'"), Path("c.yaml") + "\n");
   EXPECT_EQ(offers("run --threads ''"), "\n") << "a number is nothing to offer words for";
 }
@@ -183,10 +187,14 @@ TEST_F(FlowTest, OtherShellsTakeTheirScripts) {
     EXPECT_EQ(std::system((std::string(shell) + " -n '" + Path(shell) + "'").c_str()), 0) << shell;
   }
   if (std::system("command -v fish > /dev/null") == 0) {
-    const std::string ask =
-        "fish -c \"source '" + Path("fish") + "'; complete -C 'glint run --from g'\" > '" + Path("offers") + "'";
-    EXPECT_EQ(std::system(ask.c_str()), 0);
-    EXPECT_THAT(ReadText(folder_ / "offers"), testing::StartsWith("gate"));
+    const std::map<std::string, std::string> offers{
+        {"run --from g", "gate"}, {"synth h", "hood"}, {"--ver", "--version"}};
+    for (const auto& [words, offer] : offers) {
+      const std::string ask =
+          "fish -c \"source '" + Path("fish") + "'; complete -C 'glint " + words + "'\" > '" + Path("offers") + "'";
+      EXPECT_EQ(std::system(ask.c_str()), 0);
+      EXPECT_THAT(ReadText(folder_ / "offers"), testing::StartsWith(offer)) << words;
+    }
   }
   EXPECT_EQ(RunGlint({"completion", "tcsh"}).exit_code, 2);
 }
