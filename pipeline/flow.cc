@@ -190,6 +190,8 @@ void Flow::RefineSurface() {
              config_.refine, log_);
   log_.Finish();
   for (const std::string& warning : refined.summary.warnings) log_.Warn(warning);
+  if (refined.summary.num_photo_points > 0)
+    Note(fmt::format("texture shows the surface in {} places", refined.summary.num_photo_points));
   if (const std::string said = refined.summary.tilts.BriefReport(); !said.empty()) Note(said);
   TakeRefinedLights(refined);
   summary_.refine = refined.summary;

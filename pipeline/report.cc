@@ -91,6 +91,7 @@ Json ToJson(const RefineSummary& refine) {
                {"highlights", refine.num_highlights},
                {"contacts", refine.num_contacts},
                {"points", refine.num_points},
+               {"photo_points", refine.num_photo_points},
                {"shaded_patches", refine.tilts.num_shaded},
                {"given_normals", refine.tilts.num_given_normals},
                {"normal_map_scatter_deg", refine.tilts.normal_map_scatter_deg},

@@ -50,6 +50,7 @@ SightColors::SightColors(const ImageSource& images, size_t most_views, size_t me
 SightColors::~SightColors() = default;
 
 bool SightColors::Has(size_t view) const { return !maps_->map(view).empty(); }
+double SightColors::PixelSize(size_t view) const { return maps_->PixelSize(view); }
 
 std::optional<Eigen::Array3f> SightColors::At(size_t view, const Eigen::Vector2d& px) const {
   const cv::Mat& map = maps_->map(view);

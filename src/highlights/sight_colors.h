@@ -23,6 +23,8 @@ class SightColors {
   ~SightColors();
 
   bool Has(size_t view) const;
+  // Pixels of the image that one of its copy is wide; the view has one.
+  double PixelSize(size_t view) const;
 
   // Red, green and blue as the eye counts them (the square root of linear light, 1 = sensor white); nullopt off the
   // image, where the mask ignores it and where it is cut off at white.

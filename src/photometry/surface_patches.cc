@@ -33,13 +33,6 @@ std::vector<size_t> OneACell(const std::vector<Eigen::Vector3d>& vertices, doubl
   return chosen;
 }
 
-bool Mirrors(const View& view, const std::vector<Light>& lights, const SurfacePatch& patch) {
-  return std::any_of(lights.begin(), lights.end(), [&](const Light& light) {
-    return ShinesIn(light, view.name) &&
-           HalfVector(light, view.cam_from_world, patch.position).dot(patch.normal) > kMirrorCosine;
-  });
-}
-
 }  // namespace
 
 std::vector<SurfacePatch> SpreadPatches(const TriangleMesh& surface, const Scene& scene, double spacing_world) {
@@ -60,6 +53,13 @@ std::vector<SurfacePatch> SpreadPatches(const TriangleMesh& surface, const Scene
     }
   });
   return patches;
+}
+
+bool Mirrors(const View& view, const std::vector<Light>& lights, const SurfacePatch& patch) {
+  return std::any_of(lights.begin(), lights.end(), [&](const Light& light) {
+    return ShinesIn(light, view.name) &&
+           HalfVector(light, view.cam_from_world, patch.position).dot(patch.normal) > kMirrorCosine;
+  });
 }
 
 void TakeLooks(const Scene& scene, const ViewColors& colors, const std::vector<Light>& lights,

@@ -35,6 +35,9 @@ struct SurfacePatch {
 // Without looks.
 std::vector<SurfacePatch> SpreadPatches(const TriangleMesh& surface, const Scene& scene, double spacing_world);
 
+// Whether a light is mirrored within 20 degrees of the patch's normal: its gloss may show there.
+bool Mirrors(const View& view, const std::vector<Light>& lights, const SurfacePatch& patch);
+
 // Takes the squarest of those looks in which no light is mirrored anywhere near the patch: its gloss is dark there.
 void TakeLooks(const Scene& scene, const ViewColors& colors, const std::vector<Light>& lights,
                std::vector<SurfacePatch>& patches);

@@ -64,7 +64,8 @@ class Refiner {
         frame_(UnitFrame::Of(input.seed)),
         highlights_(MakeHighlights()),
         tilts_(input.scene, input.lights.empty() ? nullptr : input.images, input.normals, options.tilts, frame_,
-               progress) {
+               progress),
+        photo_(input.scene, input.images, options.photo, frame_, progress) {
     seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
     seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
     surface_ = seed_;
@@ -105,6 +106,7 @@ class Refiner {
   LevelSet SeedField(double voxel, double half_width_voxels);
   LevelSet Step(const LevelSet& seed_field, bool undecided, StepSummary& summary);
   void TakeSurface(const LevelSet& stepped, const SdfOptions& sdf);
+  void TakePhotoPoints();
   void UpdatePoints(const LevelSet& field);
   std::vector<SurfacePoint> KnownPlaces(const LevelSet& field) const;
   void MeasureConfidence();
@@ -119,12 +121,13 @@ class Refiner {
   LevelSet seed_field_;
   double way_from_seed_ = 0;  // the largest of the surface's vertices so far
   HighlightContacts highlights_;
-  std::vector<SurfacePoint> points_;
+  std::vector<SurfacePoint> points_;  // sparse ones, then those from texture
   std::vector<Eigen::Matrix3d> point_covariance_;
   std::vector<OutlineRay> outline_;
   std::vector<SurfacePoint> rim_;
   std::vector<Eigen::Vector3d> fine_;  // of the seed, finer than it is elsewhere
   PhotoTilts tilts_;
+  PhotoPoints photo_;
   RefineSummary summary_;
 };
 
@@ -178,6 +181,17 @@ void Refiner::MakeOutline() {
   for (const OutlineSample& sample : input_.outline)
     outline_.push_back({frame_.FromWorld(input_.scene.views[sample.view].Center()), sample.ray, sample.normal,
                         frame_.scale * sample.near, frame_.scale * sample.far, frame_.scale * sample.sigma});
+}
+
+void Refiner::TakePhotoPoints() {
+  points_.resize(summary_.num_points);
+  point_covariance_.resize(summary_.num_points);
+  const std::vector<PhotoPoint> seen = photo_.Look(surface_, highlights_.lights());
+  for (const PhotoPoint& p : seen) {
+    points_.emplace_back().position = p.position;
+    point_covariance_.push_back(p.sigma * p.sigma * Eigen::Matrix3d::Identity());
+  }
+  summary_.num_photo_points = static_cast<int>(seen.size());
 }
 
 void Refiner::UpdatePoints(const LevelSet& field) {
@@ -247,6 +261,7 @@ bool Refiner::RunLevel(double voxel, size_t progress_steps) {
   sdf.half_width_voxels = options_.half_width_voxels + (voxel > 1.5 * options_.voxel_rel ? 2 : 0);
   const LevelSet seed_field = SeedField(voxel, sdf.half_width_voxels);
   if (!field_.empty()) field_ = Resample(field_, voxel, sdf.half_width_voxels);
+  TakePhotoPoints();
   for (int k = 0; k < options_.max_iterations; ++k) {
     progress_.ThrowIfCancelled();
     const auto start = std::chrono::steady_clock::now();

@@ -17,6 +17,7 @@
 #include "refine/bundle.h"
 #include "refine/flow_step.h"
 #include "refine/level_set_step.h"
+#include "refine/photo_points.h"
 #include "refine/photo_tilts.h"
 #include "sdf/level_set.h"
 #include "silhouette/outline.h"
@@ -39,6 +40,7 @@ struct RefineOptions {
   ContactOptions contacts;
   BundleOptions bundle;
   TiltOptions tilts;
+  TextureOptions photo;
   LevelSetOptions level_set;
   FlowOptions flow;
   void Visit(OptionVisitor& v);
@@ -52,7 +54,7 @@ struct RefineInput {
   std::vector<Highlight> highlights;
   std::vector<Light> lights;
   std::vector<OutlineSample> outline = {};
-  const ImageSource* images = nullptr;    // for shading; none: no shading
+  const ImageSource* images = nullptr;    // for shading and texture; none: neither
   const NormalSource* normals = nullptr;  // none: no normal maps
 };
 
@@ -71,6 +73,7 @@ struct RefineSummary {
   int num_highlights = 0;
   int num_contacts = 0;
   int num_points = 0;
+  int num_photo_points = 0;  // where texture shows the surface, the last time
   TiltSummary tilts;
   bool converged = false;
   std::vector<std::string> warnings;

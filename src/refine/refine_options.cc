@@ -48,6 +48,7 @@ void RefineOptions::Visit(OptionVisitor& v) {
   VisitSection(v, "contacts", "highlights as oriented rays", contacts);
   VisitSection(v, "bundle", "the specular bundle", bundle);
   VisitSection(v, "tilts", "normals from shading and from normal maps", tilts);
+  VisitSection(v, "photo", "places from texture (photo-consistency)", photo);
   VisitSection(v, "level_set", "the energy of the level set", level_set);
   VisitSection(v, "flow", "the other method", flow);
 }

@@ -7,6 +7,7 @@
 #include "geometry/self_intersections.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
+#include "seed/stiffness.h"
 
 namespace glint {
 namespace {
@@ -106,7 +107,12 @@ Shape MakeShape(const Scene& scene, PointReliability& reliability, ObjectChoice&
     const std::vector<Attachment> attachments = Attachments(scene, shape.sparse, reliability, rim);
     FairResult fair = FairWithoutFolds(shape.sparse.mesh, attachments, context, fair_options, shape.folded);
     shape.smooth = std::move(fair.mesh);
-    if (round + 1 == kRounds || !DropDoubted(attachments, fair, reliability, choice)) break;
+    if (round + 1 < kRounds && DropDoubted(attachments, fair, reliability, choice)) continue;
+    FairOptions stiffer = fair_options;
+    stiffer.smoothing = SmoothingByHoldingOut(shape.smooth, attachments, context, fair_options);
+    if (stiffer.smoothing > fair_options.smoothing)
+      shape.smooth = FairWithoutFolds(shape.sparse.mesh, attachments, context, stiffer, shape.folded).mesh;
+    break;
   }
   return shape;
 }

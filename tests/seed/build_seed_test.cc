@@ -8,7 +8,10 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "geometry/closest_point.h"
+#include "core/median.h"
+#include "geometry/edge_topology.h"
 #include "geometry/mesh_checks.h"
+#include "geometry/pseudo_normals.h"
 #include "seed/scene_layout.h"
 #include "simulated_scene.h"
 
@@ -87,6 +90,26 @@ TEST(BuildSeed, BoxOverridesTheChoice) {
   EXPECT_THROW(BuildSeed(scene, options), InputError);
   options.object.box = {0, 0, 0, 1, -1, 1};
   EXPECT_THROW(BuildSeed(scene, options), InputError);
+}
+
+// Points a tenth of their spacing off: a surface through each of them would be turned by about as many degrees.
+TEST(BuildSeed, ManyPointsThatErrALittleDoNotDentIt) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, 800);
+  std::mt19937 random(3);
+  std::normal_distribution<double> error(0, 0.008);
+  for (ScenePoint& p : scene.points)
+    for (int k = 0; k < 3; ++k) p.position[k] += error(random);
+  const TriangleMesh smooth = BuildSeed(scene).smooth;
+  ASSERT_FALSE(smooth.empty());
+  const std::vector<Eigen::Vector3d> normals = ComputePseudoNormals(smooth, BuildEdgeTopology(smooth)).vertex;
+  std::vector<double> turned_deg;
+  for (size_t v = 0; v < normals.size(); ++v)
+    if (smooth.vertices[v].z() > 0)
+      turned_deg.push_back(std::acos(std::min(1.0, normals[v].normalized().dot(smooth.vertices[v].normalized()))) *
+                           180 / M_PI);
+  EXPECT_LT(Median(turned_deg), 2);
+  EXPECT_LT(MeanRadiusError(smooth), 0.003);
 }
 
 TEST(BuildSeed, PointsBehindTheSurfaceDoNotDentIt) {
