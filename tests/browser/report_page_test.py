@@ -208,6 +208,9 @@ def check_look(browser, page, folder, name, dark):
     settle(browser)
     name += "_dark" if dark else ""
     check_width(browser, name)
+    hidden = browser.run(
+        "const box = document.querySelector('#lights .scroll'); return box.scrollWidth - box.clientWidth")
+    expect(hidden <= 0, f"{name}: the table of lights is seen whole ({hidden} px are not)")
     background = browser.run("return getComputedStyle(document.body).backgroundColor")
     expect((background == "rgb(18, 21, 26)") == dark, f"{name}: its background is {background}")
     if "--screenshots" in sys.argv:

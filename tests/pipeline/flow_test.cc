@@ -158,8 +158,9 @@ TEST_F(BatchTest, EveryProblemOfTheFileIsSaidBeforeAnythingRuns) {
 
 TEST_F(FlowTest, BashCompletes) {
   // What bash offers for a command line whose last word is being typed.
+  Write("glint.bash", RunGlint({"completion", "bash"}).out);
   const auto offers = [&](const std::string& words) {
-    Write("ask.sh", "source <('" GLINT_PROGRAM "' completion bash)\nCOMP_WORDS=(glint " + words +
+    Write("ask.sh", "source '" + Path("glint.bash") + "'\nCOMP_WORDS=(glint " + words +
                         ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_glint\necho \"${COMPREPLY[*]}\"\n");
     EXPECT_EQ(std::system(("bash '" + Path("ask.sh") + "' > '" + Path("offers") + "'").c_str()), 0) << words;
     return ReadText(folder_ / "offers");

@@ -2,10 +2,14 @@
 import { byId, count, el, lightColor, number, percent, seconds } from './dom.js';
 import { plot } from './plots.js';
 
-const row = (tag, cells) => el('tr', {}, ...cells.map((c) => el(tag, {}, c)));
+// On a phone each row is a card, its cells named by their column (report.css); roles keep it a table for readers.
 export function table(head, rows) {
+  const row = (tag, role, cells) =>
+    el('tr', { role: 'row' }, ...cells.map((c, k) => el(tag, { role, 'data-column': head[k] }, el('span', {}, c))));
   return el('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'table' },
-    el('table', {}, el('thead', {}, row('th', head)), el('tbody', {}, ...rows.map((cells) => row('td', cells)))));
+    el('table', { role: 'table' },
+      el('thead', { role: 'rowgroup' }, row('th', 'columnheader', head)),
+      el('tbody', { role: 'rowgroup' }, ...rows.map((cells) => row('td', 'cell', cells)))));
 }
 
 const done = (data) => data.report.outcome === 'done';
