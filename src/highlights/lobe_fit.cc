@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "highlights/lobe_kernel.h"
@@ -22,8 +23,9 @@ constexpr double kReach = 3.4;               // radius of the fit in standard de
 constexpr float kSkewSigma = 0.2f;           // how lopsided lobes are on curved surfaces
 constexpr float kBendSigma = 0.3f;           // and how bent
 constexpr int kMaxIterations = 10;
-constexpr int kScaleRounds = 3;        // the noise is estimated anew so many times
-constexpr double kManyPixels = 160;    // fix ten parameters well
+constexpr int kScaleRounds = 3;      // the noise is estimated anew so many times
+constexpr double kManyPixels = 160;  // fix ten parameters well
+constexpr float kLeastPivot = 1e-12f;
 constexpr double kPerMeasurement = 4;  // residuals of neighbouring pixels go together (blur, JPEG, shape)
 
 struct Problem {
@@ -64,13 +66,20 @@ float RobustScale(const Problem& problem, const LobeParams& p) {
   return std::max(1.4826f * residuals[n / 2], 0.3f);
 }
 
-// Cholesky's decomposition with the diagonal raised by `lambda`; not finite where the matrix is not definite.
+// No lobe has more: what the equations of noise ask for overflows.
+bool Plausible(const LobeParams& p) {
+  constexpr float kMostLogAmplitude = 10, kMost = 1000;
+  return p[0] < kMostLogAmplitude && p.cwiseAbs().maxCoeff() < kMost && p.allFinite();
+}
+
+// Cholesky's decomposition with the diagonal raised by `lambda`; infinite where the matrix is not definite.
 LobeParams Solve(const internal::LobeNormal& matrix, const LobeParams& rhs, float lambda) {
   internal::LobeNormal lower;
   LobeParams x;
   for (int j = 0; j < kNumLobeParams; ++j) {
     float diagonal = matrix(j, j) * (1 + lambda) + 1e-9f;
     for (int k = 0; k < j; ++k) diagonal -= lower(j, k) * lower(j, k);
+    if (diagonal < kLeastPivot) return LobeParams::Constant(std::numeric_limits<float>::infinity());
     const float inverse = 1 / std::sqrt(diagonal);
     lower(j, j) = inverse;
     float value = rhs[j];
@@ -99,8 +108,9 @@ bool Minimise(const Problem& problem, LobeParams& p, float& scale) {
     const LobeParams step = Solve(now.hessian, now.rhs, lambda);
     const LobeParams next = p + step;
     const bool small = step.segment<2>(2).norm() < 2e-3f;
-    if (next.allFinite()) Linearise(problem, next, scale, then);
-    if (!next.allFinite() || !(then.cost < now.cost)) {
+    const bool plausible = Plausible(next);
+    if (plausible) Linearise(problem, next, scale, then);
+    if (!plausible || !(then.cost < now.cost)) {
       if (small || lambda > 1e6f) break;
       lambda *= 10;
       continue;

@@ -57,15 +57,17 @@ std::optional<Eigen::Array3f> SightColors::At(size_t view, const Eigen::Vector2d
   const double size = maps_->PixelSize(view);
   const double x = px.x() / size - 0.5, y = px.y() / size - 0.5;
   if (map.empty() || !(x >= 0 && y >= 0 && x <= map.cols - 1 && y <= map.rows - 1)) return std::nullopt;
-  const int x0 = std::min(static_cast<int>(x), map.cols - 2), y0 = std::min(static_cast<int>(y), map.rows - 2);
+  const int x0 = std::min(static_cast<int>(x), std::max(map.cols - 2, 0)), x1 = std::min(x0 + 1, map.cols - 1);
+  const int y0 = std::min(static_cast<int>(y), std::max(map.rows - 2, 0)), y1 = std::min(y0 + 1, map.rows - 1);
   if (const cv::Mat& mask = maps_->mask(view); !mask.empty() && !mask.at<uint8_t>(y0, x0)) return std::nullopt;
   const float fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
-  const auto at = [&](int dx, int dy) {
-    const cv::Vec3w& c = map.at<cv::Vec3w>(y0 + dy, x0 + dx);
+  const auto at = [&](int row, int column) {
+    const cv::Vec3w& c = map.at<cv::Vec3w>(row, column);
     return Eigen::Array3f(c[2], c[1], c[0]);
   };
   const Eigen::Array3f color =
-      ((1 - fx) * ((1 - fy) * at(0, 0) + fy * at(0, 1)) + fx * ((1 - fy) * at(1, 0) + fy * at(1, 1))) / 65535.0F;
+      ((1 - fx) * ((1 - fy) * at(y0, x0) + fy * at(y1, x0)) + fx * ((1 - fy) * at(y0, x1) + fy * at(y1, x1))) /
+      65535.0F;
   if (color.maxCoeff() > kCutOff) return std::nullopt;
   return color;
 }

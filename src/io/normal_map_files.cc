@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -23,6 +24,7 @@ constexpr std::array kEndings = {".png", ".tif", ".tiff", ".geometric.bin", ".ph
 // Lengths of what counts as a unit vector: eight bits and a resized map leave it a little off.
 constexpr float kShortest = 0.7f, kLongest = 1.3f;
 constexpr double kSameProportions = 0.02;
+constexpr size_t kMostDigits = 6;  // of a width
 
 bool IsColmaps(const std::string& name) { return name.ends_with(".bin"); }
 
@@ -50,22 +52,29 @@ cv::Mat FromColors(const cv::Mat& image) {
 // COLMAP's: "width&height&channels&", then 32-bit floats, one channel's rows after the other's.
 cv::Mat ReadColmaps(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
+  std::string head(3 * (kMostDigits + 1), '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<size_t>(in.gcount()));
   std::array<int, 3> size{};
-  std::string number;
+  size_t begin = 0;
   for (int& s : size) {
-    if (!std::getline(in, number, '&') || number.size() > 6 ||
-        std::from_chars(number.data(), number.data() + number.size(), s).ec != std::errc() || s <= 0)
+    const size_t end = std::min(head.find('&', begin), head.size());
+    const auto [stop, fault] = std::from_chars(head.data() + begin, head.data() + end, s);
+    if (end == head.size() || end > begin + kMostDigits || fault != std::errc() || stop != head.data() + end || s <= 0)
       throw InputError(file.string(), "header", "expected width&height&3& as COLMAP writes it");
+    begin = end + 1;
   }
   const auto [width, height, channels] = size;
   const size_t count = static_cast<size_t>(width) * static_cast<size_t>(height);
   std::error_code error;
-  const auto expected = static_cast<uintmax_t>(in.tellg()) + 3 * count * sizeof(float);
+  const uintmax_t expected = begin + 3 * count * sizeof(float);
   const auto found = fs::file_size(file, error);
   if (channels != 3 || error || found != expected)
     throw InputError(file.string(), "",
                      fmt::format("expected {} x {} normals in {} bytes, found {} channels in {} bytes", width, height,
                                  expected, channels, found));
+  in.clear();
+  in.seekg(static_cast<std::streamoff>(begin));
   std::vector<float> planes(3 * count);
   if (!in.read(reinterpret_cast<char*>(planes.data()), static_cast<std::streamsize>(planes.size() * sizeof(float))))
     throw InputError(file.string(), "", "the file cannot be read");

@@ -31,6 +31,7 @@ class Fitter {
   LightMixture Search() const {
     LightMixture best;
     em_.Finish(best);
+    if (observations_.empty()) return best;
     while (static_cast<int>(best.lights.size()) < options_.max_lights) {
       const LightMixture next = WithOneMore(best);
       if (em_.Repeats(next) || !(next.criterion < best.criterion - kDecisive) ||

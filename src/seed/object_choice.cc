@@ -49,8 +49,8 @@ std::vector<int> MaskBalance(const Scene& scene, const ImageSource& masks) {
     if (!masks.LoadMask(v, mask)) continue;
     any = true;
     for (const auto& [point, px] : by_view[v]) {
-      const int x = std::clamp(static_cast<int>(px.x()), 0, mask.cols - 1);
-      const int y = std::clamp(static_cast<int>(px.y()), 0, mask.rows - 1);
+      const int x = static_cast<int>(std::clamp(px.x(), 0.0F, static_cast<float>(mask.cols - 1)));
+      const int y = static_cast<int>(std::clamp(px.y(), 0.0F, static_cast<float>(mask.rows - 1)));
       balance[point] += mask.at<uint8_t>(y, x) ? 1 : -1;
     }
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "geometry/components.h"
+#include "geometry/mesh_checks.h"
 #include "geometry/self_intersections.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
@@ -50,10 +51,11 @@ FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachme
     if (SelfIntersections(result.mesh, 1).empty()) return result;
     options.smoothing *= 1.6;
   }
-  // Its inside, by winding number, has a surface that does not.
+  // Its inside, by winding number, has a surface that does not, but two sheets of it may touch.
   const double voxel = kMendVoxels * options.edge_rel * Diagonal(result.mesh);
   TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(result.mesh, voxel, {.sign = "winding"})));
-  if (mended.empty() || !SelfIntersections(mended, 1).empty()) {
+  const MeshChecks checks = CheckMeshSoundness(mended, {.self_intersections = false});
+  if (!(checks.closed && checks.oriented && checks.manifold) || !SelfIntersections(mended, 1).empty()) {
     folded = true;
     return result;
   }

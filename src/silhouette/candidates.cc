@@ -67,7 +67,7 @@ cv::Mat Hints(const Work& work, size_t view, const Raster& raster) {
   for (size_t i = 0; i < work.scene.points.size(); ++i) {
     if (work.rough.point_side[i] == 0) continue;
     for (const Observation& o : work.scene.points[i].observations) {
-      if (o.view != view) continue;
+      if (o.view != view || !work.scene.views[view].Contains(o.px.cast<double>())) continue;
       const Eigen::Vector2d at = raster.FromImage(o.px.cast<double>());
       const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
       for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}})

@@ -3,6 +3,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "io/image_header.h"
+#include "io/normal_map_files.h"
 #include "io/project_images.h"
 #include "tests/fuzz/scratch.h"
 #include "tests/fuzz/targets.h"
@@ -57,10 +58,37 @@ void RunFree(std::string_view bytes) {
   Try([&] { ReadImage(ScratchFile("ball.jpg", bytes), image); });
 }
 
+std::vector<std::string> NormalMapSeeds() {
+  std::string colmaps = std::to_string(kWidth) + "&" + std::to_string(kHeight) + "&3&";
+  for (const float value : {0.6F, 0.0F, -0.8F})
+    for (int i = 0; i < kWidth * kHeight; ++i) colmaps.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  return {colmaps, Encoded(".png", CV_16UC3), Encoded(".png", CV_8UC3)};
+}
+
+// As an image and as a map of COLMAP's.
+void RunNormalMap(std::string_view bytes) {
+  ScratchFile("maps/a.jpg.png", bytes);
+  ScratchFile("maps/b.jpg.geometric.bin", bytes);
+  Scene scene;
+  for (const char* name : {"a.jpg", "b.jpg"}) {
+    View& view = scene.views.emplace_back();
+    view.name = name;
+    view.camera = {1, CameraModel::kPinhole, kWidth, kHeight, {10, 10, 6, 4}};
+  }
+  Try([&] {
+    const NormalMapFiles maps(scene, Scratch::Folder() / "maps", {});
+    cv::Mat map;
+    for (const size_t view : {0, 1}) Try([&] { maps.LoadNormals(view, map); });
+  });
+}
+
 }  // namespace
 
 std::vector<Target> ImageTargets() {
-  return {{"image_header", RunHeader, Seeds}, {"project_image", RunProject, Seeds}, {"free_image", RunFree, Seeds}};
+  return {{"image_header", RunHeader, Seeds},
+          {"project_image", RunProject, Seeds},
+          {"free_image", RunFree, Seeds},
+          {"normal_map", RunNormalMap, NormalMapSeeds}};
 }
 
 }  // namespace glint::fuzz

@@ -104,7 +104,7 @@ TEST(NormalMapFiles, NamesTheFileThatIsWrong) {
   EXPECT_THAT(message([&] { NormalMapFiles(scene, folder.path() / "none", {}); }), testing::HasSubstr("none"));
   EXPECT_THAT(message(load), testing::HasSubstr("a.jpg.png for example; found none"));
   const fs::path file = folder.path() / "a.jpg.photometric.bin";
-  for (const char* header : {"", "12&8", "12&8&1&", "99999999999&8&3&", "-1&8&3&", "12&9&3&"}) {
+  for (const char* header : {"", "12&8", "12&8&1&", "99999999999&8&3&", "-1&8&3&", "12x&8&3&", "12&9&3&"}) {
     WriteFile(file, ColmapsMap(header, kNormal));
     EXPECT_THAT(message(load), testing::HasSubstr("photometric.bin")) << header;
   }

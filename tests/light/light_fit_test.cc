@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cfenv>
 #include <cmath>
 #include <random>
 
@@ -173,7 +174,9 @@ TEST(FitLights, DoesNotDependOnTheScale) {
 
 TEST(FitLights, NothingOneAndAllInOnePlace) {
   Simulated scene;
+  std::feclearexcept(FE_ALL_EXCEPT);
   EXPECT_TRUE(scene.Fit({}).lights.empty());
+  EXPECT_FALSE(std::fetestexcept(FE_INVALID)) << "no share of nothing";
   std::vector<LightObservation> observations;
   scene.Add(observations, Distant({0.6, -0.5, 0.7}), 1);
   EXPECT_TRUE(scene.Fit({observations[0]}).lights.empty());
