@@ -2,6 +2,9 @@
 
 #include <openvdb/tools/Composite.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "sdf/extract_mesh.h"
 #include "sdf/level_set_impl.h"
 #include "sdf/mesh_to_level_set.h"
@@ -26,14 +29,29 @@ TriangleMesh Combined(const TriangleMesh& a, const TriangleMesh& b, double voxel
   return out;
 }
 
+// The greater of a field and another's negative, with a parabola over the last k voxels where they cross.
+void RoundEdges(const openvdb::FloatGrid& first, const openvdb::FloatGrid& second, float k, openvdb::FloatGrid& out) {
+  const auto a = first.getConstAccessor(), b = second.getConstAccessor();
+  for (auto it = out.beginValueOn(); it; ++it) {
+    const float x = a.getValue(it.getCoord()), y = -b.getValue(it.getCoord());
+    const float near = std::max(k - std::abs(x - y), 0.0F) / k;
+    it.setValue(std::max(x, y) + 0.25F * k * near * near);
+  }
+}
+
 }  // namespace
 
 TriangleMesh Union(const TriangleMesh& a, const TriangleMesh& b, double voxel_size_world) {
   return Combined(a, b, voxel_size_world, openvdb::tools::csgUnionCopy<openvdb::FloatGrid>);
 }
 
-TriangleMesh Difference(const TriangleMesh& a, const TriangleMesh& b, double voxel_size_world) {
-  return Combined(a, b, voxel_size_world, openvdb::tools::csgDifferenceCopy<openvdb::FloatGrid>);
+TriangleMesh Difference(const TriangleMesh& a, const TriangleMesh& b, double voxel_size_world, double rounding_world) {
+  const auto k = static_cast<float>(rounding_world / voxel_size_world);
+  return Combined(a, b, voxel_size_world, [k](const openvdb::FloatGrid& first, const openvdb::FloatGrid& second) {
+    const openvdb::FloatGrid::Ptr out = openvdb::tools::csgDifferenceCopy(first, second);
+    if (k > 0) RoundEdges(first, second, k, *out);
+    return out;
+  });
 }
 
 }  // namespace glint

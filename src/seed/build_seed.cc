@@ -26,10 +26,11 @@ constexpr double kGoodWithout = 0.75;  // share that fits: what points alone exp
 constexpr double kWorthwhile = 0.85;
 constexpr size_t kColorViews = 48;
 constexpr size_t kColorMemory = size_t{1} << 29;
-constexpr double kVoxelRel = 0.004;   // of the diagonal: as fine as the smooth surface once divided
-constexpr double kLeastTaken = 0.25;  // of the hollows' volume: less, and nothing was opened
-constexpr double kFineRel = 0.003;    // of the diagonal
-constexpr int kSubdivisions = 2;      // of the smooth surface: its facets must not show at the finest voxels
+constexpr double kVoxelRel = 0.004;     // of the diagonal: as fine as the smooth surface once divided
+constexpr double kRoundingRel = 0.012;  // of the diagonal: of a hollow's edge, about the thinnest wall
+constexpr double kLeastTaken = 0.25;    // of the hollows' volume: less, and nothing was opened
+constexpr double kFineRel = 0.003;      // of the diagonal
+constexpr int kSubdivisions = 2;        // of the smooth surface: its facets must not show at the finest voxels
 
 double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
   const ClosestPointQuery query(mesh);
@@ -134,7 +135,8 @@ TriangleMesh WithoutHollows(const Scene& scene, const SparseSurface& sparse, con
   const SightColors colors(images, kColorViews, kColorMemory, progress);
   const TriangleMesh hollows = FindHollows(scene, colors, smooth, known, &s.hollows, progress);
   if (hollows.empty()) return smooth;
-  TriangleMesh opened = UnlessTorn(smooth, LargestPiece(Difference(smooth, hollows, kVoxelRel * Diagonal(smooth))));
+  TriangleMesh opened = UnlessTorn(
+      smooth, LargestPiece(Difference(smooth, hollows, kVoxelRel * Diagonal(smooth), kRoundingRel * Diagonal(smooth))));
   const double taken = SignedVolume(smooth) - SignedVolume(opened);
   s.hollows_opened = taken > kLeastTaken * std::abs(SignedVolume(hollows));
   return s.hollows_opened ? opened : smooth;
