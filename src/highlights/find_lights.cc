@@ -13,6 +13,7 @@
 #include "highlights/moving_candidates.h"
 #include "highlights/seed_surface.h"
 #include "highlights/view_brightness.h"
+#include "light/light_covariance.h"
 
 namespace glint {
 namespace {
@@ -37,22 +38,28 @@ LightFitOptions FitOptions(const GateOptions& gate, const FindLightsOptions& opt
   fit.max_lights = options.max_lights;
   fit.min_support = options.min_support;
   fit.max_incidence_deg = gate.max_incidence_deg + 5;
+  fit.max_normal_sigma_deg = options.max_normal_sigma_deg;
   fit.allow_distant = options.kinds != "point";
   fit.allow_point = options.kinds != "distant";
   return fit;
 }
 
 // Root mean square distance of the light's highlights on the surface from their middle.
-double Spread(const std::vector<LightObservation>& observations, const std::vector<int>& assignment, int light) {
+double Spread(const std::vector<LightObservation>& of_light) {
+  if (of_light.empty()) return 0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  double count = 0, squares = 0;
+  double squares = 0;
+  for (const LightObservation& o : of_light) mean += o.position / static_cast<double>(of_light.size());
+  for (const LightObservation& o : of_light) squares += (o.position - mean).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(of_light.size()));
+}
+
+std::vector<LightObservation> OfLight(const std::vector<LightObservation>& observations,
+                                      const std::vector<int>& assignment, int light) {
+  std::vector<LightObservation> of_light;
   for (size_t i = 0; i < observations.size(); ++i)
-    if (assignment[i] == light) mean += observations[i].position, ++count;
-  if (count == 0) return 0;
-  mean /= count;
-  for (size_t i = 0; i < observations.size(); ++i)
-    if (assignment[i] == light) squares += (observations[i].position - mean).squaredNorm();
-  return std::sqrt(squares / count);
+    if (assignment[i] == light) of_light.push_back(observations[i]);
+  return of_light;
 }
 
 std::vector<char> ViewsThatShow(size_t num_views, const std::vector<Highlight>& of_light) {
@@ -129,9 +136,12 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
     FoundLight f = fit.lights[k];
     LimitToGroups(scene, groups, k, f.light, shows[k].expected);
     MeasureSize(scene, surface, of_light(k), BoundingBox(seed).center(), f);
-    evidence.push_back({InsideObject(f.light, seed), Spread(observations, fit.assignment, static_cast<int>(k)),
+    const auto seen = OfLight(observations, fit.assignment, static_cast<int>(k));
+    evidence.push_back({InsideObject(f.light, seed), Spread(seen),
                         static_cast<int>(std::count(shows[k].expected.begin(), shows[k].expected.end(), 1)),
-                        WidthsDeg(scene, surface, of_light(k), f.light)});
+                        WidthsDeg(scene, surface, of_light(k), f.light),
+                        HalfVectorSigma(seen, fit.lights[k].covariance, diagonal, f.light) * 180 / M_PI});
+    MeasureOff(scene, surface, of_light(k), fit.lights, evidence.back());
     told.lights.push_back(f);
   }
   JudgeLights(evidence, diagonal, options, told.lights);

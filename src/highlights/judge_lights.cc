@@ -15,6 +15,7 @@ constexpr double kMinConditioning = 0.01;
 constexpr double kOneSpotRel = 0.01;    // spread of highlights that share one place's error, diagonals
 constexpr double kTellingWidthDeg = 3;  // of sharper gloss the seed's facets decide how wide it looks
 constexpr size_t kFewestWidths = 5;
+constexpr double kAboutSpread = 0.75;  // of the spread, of which the seed's error is a half (SeedSurface)
 constexpr double kSigmaOfMad = 1.4826;
 constexpr double kLeastLogSigma = 0.1;
 // Bright spots a view that move, and the share of them that lights explain, of what is no gloss under a few lights.
@@ -51,6 +52,28 @@ double Completeness(const FoundLight& f, const LightEvidence& e) {
   return e.expected_views > 0 ? std::min(1.0, f.support / e.expected_views) : 1;
 }
 
+// Highlights that no better supported light that is determined explains as well as light k's normals are known.
+int NeededFor(const std::vector<FoundLight>& lights, const LightEvidence& evidence, size_t k) {
+  return static_cast<int>(std::count_if(evidence.off_deg.begin(), evidence.off_deg.end(), [&](const auto& off_deg) {
+    for (size_t j = 0; j < k && j < off_deg.size(); ++j)
+      if (lights[j].determined && off_deg[j] < 2 * lights[j].normal_sigma_deg) return false;
+    return true;
+  }));
+}
+
+void LeaveOutNeedless(const std::vector<LightEvidence>& evidence, const FindLightsOptions& options,
+                      std::vector<FoundLight>& lights) {
+  for (size_t k = 0; k < lights.size(); ++k) {
+    FoundLight& f = lights[k];
+    if (!f.determined || evidence[k].half_sigma_deg < f.normal_sigma_deg || evidence[k].off_deg.empty()) continue;
+    const int needed = NeededFor(lights, evidence[k], k);
+    if (needed >= options.min_support) continue;
+    f.determined = false;
+    f.why = fmt::format(
+        "it is no surer than the surface's normals, and all but {} of its highlights may be another light's", needed);
+  }
+}
+
 struct LogWidths {
   double median = 0, sigma = 0;
 };
@@ -85,6 +108,24 @@ bool NarrowerThanGloss(const std::vector<double>& gloss_deg, const std::vector<d
   return gloss.median - cluster.median > 2 * std::hypot(gloss.sigma, of_median);
 }
 
+void MeasureOff(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
+                const std::vector<FoundLight>& lights, LightEvidence& evidence) {
+  evidence.off_deg.clear();
+  for (const Highlight& h : highlights) {
+    const View& view = scene.views[h.view];
+    const auto ray = view.RayThrough(h.px);
+    if (!ray) continue;
+    std::vector<double>& off_deg = evidence.off_deg.emplace_back(lights.size(), 180.0);
+    for (const SurfaceSample& s : surface.Neighbourhood(view.Center(), *ray)) {
+      if (s.off_center > kAboutSpread) continue;
+      for (size_t j = 0; j < lights.size(); ++j) {
+        const Eigen::Vector3d half = HalfVector(lights[j].light, view.cam_from_world, s.position);
+        off_deg[j] = std::min(off_deg[j], std::atan2(half.cross(s.normal).norm(), half.dot(s.normal)) * 180 / M_PI);
+      }
+    }
+  }
+}
+
 void JudgeLights(const std::vector<LightEvidence>& evidence, double diagonal, const FindLightsOptions& options,
                  std::vector<FoundLight>& lights) {
   double most_complete = 0;
@@ -105,6 +146,7 @@ void JudgeLights(const std::vector<LightEvidence>& evidence, double diagonal, co
     f.determined = f.why.empty();
   }
   LeaveOutNarrow(evidence, lights);
+  LeaveOutNeedless(evidence, options, lights);
 }
 
 std::string NotHighlights(const BrightSpots& spots, const std::vector<FoundLight>& lights) {

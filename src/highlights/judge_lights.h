@@ -5,7 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "colmap/scene.h"
 #include "highlights/find_lights.h"
+#include "highlights/highlight.h"
+#include "highlights/seed_surface.h"
 #include "light/found_light.h"
 
 namespace glint {
@@ -16,7 +19,15 @@ struct LightEvidence {
   double spread_world = 0;         // rms distance of its highlights on the surface from their middle
   int expected_views = 0;          // in which the surface has a place that would mirror it
   std::vector<double> widths_deg;  // of its highlights' lobes (mirror_test.h)
+  double half_sigma_deg = 0;       // how uncertain it leaves the half vectors at its highlights
+  // Of each highlight, by light: the least angle between that light's half vector and the seed's normals about it.
+  std::vector<std::vector<double>> off_deg = {};
 };
+
+// Sets the evidence's `off_deg`. About a highlight: where rays meet the seed within about as far as the seed may be
+// off.
+void MeasureOff(const Scene& scene, const SeedSurface& surface, const std::vector<Highlight>& highlights,
+                const std::vector<FoundLight>& lights, LightEvidence& evidence);
 
 // Sets `determined` and `why` of every light. One that shows in few of the views that should show it is a chance
 // agreement of marks, unless the other lights of the same object show in no more: highlights are missed for reasons

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -41,6 +42,15 @@ class Fitter {
     }
     TryOtherKinds(best);
     return best;
+  }
+
+  // Of what is a light in it; that crowds of marks are explained, too, says nothing. Infinite: there is none.
+  double CriterionOfLights(LightMixture m) const {
+    for (size_t k = m.lights.size(); k-- > 0;)
+      if (m.sigmas[k] > options_.max_normal_sigma_deg * kRadians) m.Remove(k);
+    if (m.lights.empty()) return std::numeric_limits<double>::infinity();
+    em_.Finish(m);
+    return m.criterion;
   }
 
   LightFit Report(const LightMixture& m) const;
@@ -225,7 +235,9 @@ LightFit FitLights(const std::vector<LightObservation>& observations, const Eige
       with_moving(not_paint, center, diagonal, moving);
   const LightMixture m = options.allow_world ? with_standing.Search() : LightMixture();
   const LightMixture n = options.allow_camera ? with_moving.Search() : LightMixture();
-  return n.criterion < m.criterion ? with_moving.Report(n) : with_standing.Report(m);
+  const double of_m = with_standing.CriterionOfLights(m), of_n = with_moving.CriterionOfLights(n);
+  const bool moves = of_m == of_n ? n.criterion < m.criterion : of_n < of_m;
+  return moves ? with_moving.Report(n) : with_standing.Report(m);
 }
 
 }  // namespace glint

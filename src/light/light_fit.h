@@ -23,6 +23,7 @@ struct LightFitOptions {
   int max_lights = 6;
   int min_support = 5;  // highlights a light needs
   double max_incidence_deg = 65;
+  double max_normal_sigma_deg = 5;  // what agrees with the normals no better is a crowd of marks, not a light
   bool allow_distant = true;
   bool allow_point = true;
   bool allow_world = true;
@@ -40,8 +41,8 @@ struct LightFit {
 // from the best of a grid of directions in the world's and in the camera's frame and the camera itself (flash),
 // refined by expectation maximisation, and kept while the Bayesian information criterion falls; then each is tried as
 // a near one. That some light moves with the camera is a hypothesis of its own: then all that may be paint under such
-// a light counts as outliers. A point light in the camera's frame is expected near the camera. `center`, `diagonal`: of
-// the object, for the scale of positions.
+// a light counts as outliers. Of two hypotheses what they say of lights counts, not of crowds of marks. A point light
+// in the camera's frame is expected near the camera. `center`, `diagonal`: of the object, for the scale of positions.
 LightFit FitLights(const std::vector<LightObservation>& observations, const Eigen::Vector3d& center, double diagonal,
                    const LightFitOptions& options);
 

@@ -16,6 +16,7 @@
 #include "highlights/find_lights.h"
 #include "io/mesh_io.h"
 #include "io/project_images.h"
+#include "light/light_covariance.h"
 #include "light/light_io.h"
 #include "pipeline/artifacts.h"
 #include "pipeline/image_stages.h"
@@ -51,16 +52,21 @@ double AngleDeg(const Light& a, const Light& b, const Scene& scene, const Eigen:
   return sum / scene.views.size();
 }
 
-// The light's standard deviation as an angle from `center`, degrees.
-double SigmaDeg(const Light& light, const Scene& scene, const Eigen::Vector3d& center) {
-  if (light.type == LightType::kDistant) return light.sigma;
-  double distance = 0;
-  for (const View& view : scene.views)
-    distance +=
-        (light.frame == LightFrame::kWorld ? light.vector - center : light.vector - view.cam_from_world * center)
-            .norm() /
-        scene.views.size();
-  return light.sigma / distance * 180 / M_PI;
+// The largest standard deviation of the direction to the light from `center`, degrees; how far away it is does not
+// count if its covariance is known.
+double SigmaDeg(const FoundLight& found, const Scene& scene, const Eigen::Vector3d& center) {
+  if (found.light.type == LightType::kDistant) return found.light.sigma;
+  double sum = 0;
+  for (const View& view : scene.views) {
+    const Eigen::Vector3d to_light =
+        found.light.vector - (found.light.frame == LightFrame::kWorld ? center : view.cam_from_world * center);
+    const double distance = to_light.norm();
+    const Eigen::Matrix3d across =
+        Eigen::Matrix3d::Identity() - to_light * to_light.transpose() / (distance * distance);
+    const bool known = found.covariance.trace() > 0;
+    sum += (known ? LargestSigma(across * found.covariance * across, found.light) : found.light.sigma) / distance;
+  }
+  return sum / scene.views.size() * 180 / M_PI;
 }
 
 std::string KindName(const Light& light) {
@@ -115,7 +121,7 @@ void Compare(const std::string& name, const std::vector<Light>& truth, std::vect
       continue;
     }
     const double error = AngleDeg(nearest->light, t, scene, center);
-    const double sigma = SigmaDeg(nearest->light, scene, center);
+    const double sigma = SigmaDeg(*nearest, scene, center);
     tally.errors_deg.push_back(error);
     tally.errors_sigmas.push_back(error / std::max(sigma, 1e-9));
     kinds = kinds && nearest->light.type == t.type && nearest->light.frame == t.frame;

@@ -84,6 +84,22 @@ TEST(JudgeLights, OneNoDenserThanACrowdOfMarksIsChance) {
   EXPECT_TRUE(lights[2].determined) << lights[2].why;
 }
 
+TEST(JudgeLights, GlintsOnAnEdgeAreNoFurtherLight) {
+  const auto judged = [](double half_sigma_deg, double off_deg) {
+    std::vector<FoundLight> lights = {Supported(20), Supported(12)};
+    std::vector<LightEvidence> evidence = {ExpectedIn(25), ExpectedIn(16)};
+    evidence[1].half_sigma_deg = half_sigma_deg;
+    evidence[1].off_deg.assign(12, {off_deg, 1.0});
+    JudgeLights(evidence, 1, {}, lights);
+    EXPECT_TRUE(lights[0].determined) << lights[0].why;
+    return lights[1];
+  };
+  EXPECT_FALSE(judged(3, 2).determined);
+  EXPECT_THAT(judged(3, 2).why, HasSubstr("another light's"));
+  EXPECT_TRUE(judged(0.5, 2).determined);  // a lamp beside the other
+  EXPECT_TRUE(judged(3, 20).determined);   // no other light explains it
+}
+
 TEST(NotHighlights, MirrorsAndPrintAreToldApart) {
   FoundLight light = Supported(30);
   EXPECT_THAT(NotHighlights({10, 300, 10, 300}, {}), HasSubstr("mirrors its surroundings"));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cfenv>
 #include <cmath>
 #include <random>
@@ -156,6 +157,31 @@ TEST(FitLights, WhatMayBePaintUnderAMovingLightSpeaksForNone) {
   ASSERT_EQ(fit.lights.size(), 1u);
   EXPECT_EQ(fit.lights[0].light.frame, LightFrame::kCamera);
   for (size_t i = honest; i < observations.size(); ++i) EXPECT_EQ(fit.assignment[i], -1);
+}
+
+TEST(FitLights, CrowdsOfPaintDoNotHideAFlash) {
+  Simulated scene;
+  std::vector<LightObservation> observations;
+  scene.Add(observations, {LightType::kPoint, LightFrame::kCamera, Eigen::Vector3d::Zero(), 0}, 2, 24);
+  // Marks on four sides, each seen by the cameras that face it: broadly, a standing light is mirrored there.
+  std::normal_distribution<double> noise(0, 0.16);
+  for (const Eigen::Vector3d& side : {Eigen::Vector3d(1, 0, 0.8), Eigen::Vector3d(-1, 0, 0.8),
+                                      Eigen::Vector3d(0, 1, 0.8), Eigen::Vector3d(0, -1, 0.8)})
+    for (int k = 0; k < 40; ++k) {
+      const Rigid3d cam = scene.Camera(k, 40);
+      const Eigen::Vector3d half = HalfVector(Distant(side), cam, scene.center);
+      const Eigen::Vector3d n =
+          (half + Eigen::Vector3d(noise(scene.random), noise(scene.random), noise(scene.random))).normalized();
+      if (n.dot((cam.Inverse().translation - scene.center).normalized()) < 0.5) continue;
+      observations.push_back({cam, scene.center + n, n, false});
+    }
+  const LightFit fit = scene.Fit(observations);
+  const auto flash = std::find_if(fit.lights.begin(), fit.lights.end(),
+                                  [](const FoundLight& f) { return f.light.type == LightType::kPoint; });
+  ASSERT_NE(flash, fit.lights.end());
+  EXPECT_EQ(flash->light.frame, LightFrame::kCamera);
+  EXPECT_LT(flash->normal_sigma_deg, 4);
+  EXPECT_GT(flash->support, 15);
 }
 
 TEST(FitLights, DoesNotDependOnTheScale) {
