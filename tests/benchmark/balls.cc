@@ -88,11 +88,18 @@ double MissDeg(const Shot& a, const Shot& b, size_t i) {
   return std::max(AngleDeg(u, lamp - p), AngleDeg(v, lamp - q));
 }
 
+bool IsThere(const fs::path& folder) {
+  if (fs::exists(folder)) return true;
+  fmt::print("{} is not there: not measured\n", folder.string());
+  return false;
+}
+
 void MeasureUw(const fs::path& folder) {
+  if (!IsThere(folder)) return;
   Directions truth;
   std::ifstream file(folder / "lights.txt");
   int count = 0;
-  file >> count;
+  if (!(file >> count) || count < 1) throw InputError((folder / "lights.txt").string(), "", "expected their number");
   for (int i = 0; i < count; ++i) {
     double x, y, z;
     file >> x >> y >> z;
@@ -133,6 +140,7 @@ void MeasureUw(const fs::path& folder) {
 // The two crops of one photograph: where each begins in it comes from probes_bbox.txt. Rows there and in the circles
 // count from the bottom, from 1.
 void MeasurePsbox(const fs::path& folder) {
+  if (!IsThere(folder)) return;
   constexpr double kFullWidth = 3888, kFullHeight = 2592;
   std::vector<Eigen::Vector2d> corners;
   std::ifstream boxes(folder / "ManualData" / "probes_bbox.txt");
@@ -179,7 +187,7 @@ void MeasurePsbox(const fs::path& folder) {
 int main(int argc, char** argv) {
   CLI::App app("Photographs of balls with reference directions: how far the lights are off");
   glint::fs::path folder;
-  app.add_option("folder", folder, "with uw/ and psbox/data/")->required()->check(CLI::ExistingDirectory);
+  app.add_option("folder", folder, "with uw/, psbox/data/ or both")->required()->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
   try {
     glint::MeasureUw(folder / "uw");
