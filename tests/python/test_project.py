@@ -10,7 +10,11 @@ import pytest
 
 import glint
 
-QUICK = {"refine": {"voxel_rel": 0.03, "levels": 1, "max_iterations": 2}, "output.overlays": False}
+QUICK = {
+    "refine": {"voxel_rel": 0.03, "levels": 1, "max_iterations": 2},
+    "seed": {"open_hollows": False, "outlines": {"use": "none"}},
+    "output.overlays": False,
+}
 
 
 def project_pinhole(camera, image, points):
