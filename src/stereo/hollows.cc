@@ -33,7 +33,8 @@ constexpr double kVoxelRel = 1.0 / 160;
 constexpr double kWallRel = 0.008;     // of the diagonal: no wall is thinner
 constexpr double kMinDepthRel = 0.02;  // of the diagonal: less is for the refinement
 constexpr double kMinAlike = 0.3;      // of the lining
-constexpr int kStandOut = 4;           // voxels
+constexpr double kMaxUnseen = 0.05;
+constexpr int kStandOut = 4;  // voxels
 constexpr int kSmoothingPasses = 5;
 constexpr float kUnmeasured = -1;
 
@@ -81,9 +82,12 @@ TriangleMesh Without(const TriangleMesh& mesh, const std::vector<uint8_t>& left_
 
 class Carver {
  public:
-  Carver(const Judge& judge, const TriangleMesh& mesh, std::vector<uint8_t> open, float threshold)
+  // `spread`: of the faces.
+  Carver(const Judge& judge, const TriangleMesh& mesh, const std::vector<float>& spread, std::vector<uint8_t> open,
+         float threshold)
       : judge_(judge),
         mesh_(mesh),
+        spread_of_face_(spread),
         open_(std::move(open)),
         threshold_(threshold),
         distance_(mesh, "auto"),
@@ -225,9 +229,14 @@ class Carver {
     return std::isinf(least) ? Cell::kUnseen : least > threshold_ ? Cell::kCarved : Cell::kAlike;
   }
 
-  // Of the matter around a hollow, the share that looks alike from all sides. Carving through what only mirrors its
-  // surroundings finds nothing, and ends where nobody sees it or at a wall.
-  double ShareAlike(const std::vector<uint32_t>& piece) const {
+  struct Lining {
+    double alike = 0;   // the share that looks alike from all sides
+    double unseen = 0;  // the share that is a wall which too few views see from outside
+  };
+
+  // The matter around a hollow. Carving through what only mirrors its surroundings finds nothing, and ends where nobody
+  // sees it or at a wall. A wall that nobody sees may be none: then the surface was too wide there, as a whole.
+  Lining LiningOf(const std::vector<uint32_t>& piece) const {
     std::vector<uint32_t> around;
     for (const uint32_t c : piece)
       ForNeighbors(c, [&](uint32_t n) {
@@ -235,9 +244,14 @@ class Carver {
       });
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
-    const auto alike =
-        std::count_if(around.begin(), around.end(), [&](uint32_t n) { return cells_[n] == Cell::kAlike; });
-    return around.empty() ? 0 : static_cast<double>(alike) / static_cast<double>(around.size());
+    Lining lining;
+    for (const uint32_t n : around) {
+      lining.alike += cells_[n] == Cell::kAlike;
+      if (cells_[n] != Cell::kWall) continue;
+      lining.unseen += std::isinf(spread_of_face_[distance_.FindClosest(Center(n)).closest.face]);
+    }
+    const double count = std::max<double>(1, static_cast<double>(around.size()));
+    return {lining.alike / count, lining.unseen / count};
   }
 
   bool InWall(const Eigen::Vector3d& x) const { return walls_query_.Find(x, kWallRel * diagonal_).has_value(); }
@@ -258,7 +272,8 @@ class Carver {
         });
       int depth = 0;
       for (const uint32_t c : piece) depth = std::max(depth, depth_[c]);
-      if (depth * voxel_ < kMinDepthRel * diagonal_ || ShareAlike(piece) < kMinAlike) continue;
+      const Lining lining = LiningOf(piece);
+      if (depth * voxel_ < kMinDepthRel * diagonal_ || lining.alike < kMinAlike || lining.unseen > kMaxUnseen) continue;
       ++s.num_hollows;
       for (const uint32_t c : piece) deep[c] = 1;
     }
@@ -300,6 +315,7 @@ class Carver {
 
   const Judge& judge_;
   const TriangleMesh& mesh_;
+  const std::vector<float>& spread_of_face_;
   std::vector<uint8_t> open_;
   float threshold_;
   SignedDistanceQuery distance_;
@@ -330,7 +346,7 @@ TriangleMesh FindHollows(const Scene& scene, const SightColors& colors, const Tr
   std::vector<uint8_t> open = DoubtfulFaces(spreads.of_face, static_cast<float>(kDoubtful) * usual);
   s.num_doubtful = std::count(open.begin(), open.end(), 1);
   if (s.num_doubtful == 0) return {};
-  Carver carver(judge, mesh, std::move(open), usual);
+  Carver carver(judge, mesh, spreads.of_face, std::move(open), usual);
   carver.Carve(progress);
   return carver.Mesh(s);
 }
