@@ -28,6 +28,7 @@ constexpr size_t kColorViews = 48;
 constexpr size_t kColorMemory = size_t{1} << 29;
 constexpr double kVoxelRel = 0.004;     // of the diagonal: as fine as the smooth surface once divided
 constexpr double kRoundingRel = 0.012;  // of the diagonal: of a hollow's edge, about the thinnest wall
+constexpr double kLeastHollow = 1e-3;   // of the volume: less is for the refinement
 constexpr double kLeastTaken = 0.25;    // of the hollows' volume: less, and nothing was opened
 constexpr double kFineRel = 0.003;      // of the diagonal
 constexpr int kSubdivisions = 2;        // of the smooth surface: its facets must not show at the finest voxels
@@ -134,11 +135,12 @@ TriangleMesh WithoutHollows(const Scene& scene, const SparseSurface& sparse, con
     if (point >= 0) known.push_back(scene.points[point].position);
   const SightColors colors(images, kColorViews, kColorMemory, progress);
   const TriangleMesh hollows = FindHollows(scene, colors, smooth, known, &s.hollows, progress);
-  if (hollows.empty()) return smooth;
+  const double volume = hollows.empty() ? 0 : std::abs(SignedVolume(hollows));
+  if (volume <= kLeastHollow * std::abs(SignedVolume(smooth))) return smooth;
   TriangleMesh opened = UnlessTorn(
       smooth, LargestPiece(Difference(smooth, hollows, kVoxelRel * Diagonal(smooth), kRoundingRel * Diagonal(smooth))));
   const double taken = SignedVolume(smooth) - SignedVolume(opened);
-  s.hollows_opened = taken > kLeastTaken * std::abs(SignedVolume(hollows));
+  s.hollows_opened = taken > kLeastTaken * volume;
   return s.hollows_opened ? opened : smooth;
 }
 
