@@ -49,8 +49,10 @@ void LightMixture::Remove(size_t k) {
 LightMixtureFit::LightMixtureFit(const std::vector<LightObservation>& observations, const Eigen::Vector3d& center,
                                  double diagonal, const LightFitOptions& options)
     : observations_(observations), center_(center), diagonal_(diagonal), options_(options) {
-  for (const LightObservation& o : observations)
+  for (const LightObservation& o : observations) {
+    num_eligible_ += o.outlier ? 0 : 1;
     flash_spread_ += kFlashSpread * (o.cam_from_world * center).norm() / diagonal / observations.size();
+  }
 }
 
 void LightMixtureFit::Finish(LightMixture& m) const {
@@ -89,7 +91,7 @@ double LightMixtureFit::MeanAngle(const Light& one, const Light& other) const {
 // What a light costs: its share, its sigma and its parameters. A flash is where one expects it, and that is worth two
 // of them.
 double LightMixtureFit::Complexity(const Light& light) const {
-  const double log_n = std::log(std::max<double>(observations_.size(), 2));
+  const double log_n = std::log(std::max<double>(num_eligible_, 2));
   if (!IsFlash(light)) return (2 + NumParameters(light)) * log_n;
   return 3 * log_n + (light.vector / (flash_spread_ * diagonal_)).squaredNorm();
 }
@@ -103,7 +105,8 @@ double LightMixtureFit::Expect(LightMixture& m) const {
   const double outliers = m.OutlierShare();
   double log_likelihood = 0;
   for (size_t i = 0; i < n; ++i) {
-    double total = outliers * kOutlierDensity;
+    // What is an outlier in any case says nothing of how many there are.
+    double total = (observations_[i].outlier ? 1 : outliers) * kOutlierDensity;
     for (size_t j = 0; j < k; ++j) {
       const double angle = Disagreement(observations_[i], m.lights[j], options_.max_incidence_deg);
       // Student's distribution in the plane across the half vector: seeds have normals that are much further off.
@@ -124,7 +127,7 @@ void LightMixtureFit::Maximise(LightMixture& m) const {
   const size_t n = observations_.size(), k = m.lights.size();
   for (size_t j = 0; j < k; ++j) {
     double squares = 0, weight = 0;
-    m.shares[j] = std::clamp(m.responsibilities.col(j).sum() / n, 1e-3, 0.98);
+    m.shares[j] = std::clamp(m.responsibilities.col(j).sum() / std::max(num_eligible_, 1.0), 1e-3, 0.98);
     AdjustLight(observations_, m.weights.col(j), options_.max_incidence_deg, diagonal_, Prior(m.sigmas[j]),
                 m.lights[j]);
     for (size_t i = 0; i < n; ++i) {

@@ -55,6 +55,7 @@ class LightMixtureFit {
   const double diagonal_;
   const LightFitOptions& options_;
   double flash_spread_ = 0;  // how far from the camera a flash is expected, diagonals
+  double num_eligible_ = 0;  // observations that are not outliers in any case
 };
 
 inline bool IsFlash(const Light& light) {

@@ -184,6 +184,19 @@ TEST(FitLights, CrowdsOfPaintDoNotHideAFlash) {
   EXPECT_GT(flash->support, 15);
 }
 
+TEST(FitLights, AFlashIsFoundAmongMuchThatMayBePaint) {
+  Simulated scene;
+  std::vector<LightObservation> observations;
+  scene.Add(observations, {LightType::kPoint, LightFrame::kCamera, Eigen::Vector3d::Zero(), 0}, 4, 8);
+  const size_t honest = observations.size();
+  scene.AddPaint(observations, 170);
+  for (size_t i = honest; i < observations.size(); ++i) observations[i].may_move = false;
+  const LightFit fit = scene.Fit(observations);
+  ASSERT_EQ(fit.lights.size(), 1u);
+  EXPECT_EQ(fit.lights[0].light.frame, LightFrame::kCamera);
+  EXPECT_EQ(fit.lights[0].light.type, LightType::kPoint);
+}
+
 TEST(FitLights, DoesNotDependOnTheScale) {
   for (const double scale : {1e-6, 1e6}) {
     Simulated scene;
