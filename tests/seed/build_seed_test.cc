@@ -6,9 +6,9 @@
 
 #include "colmap/model.h"
 #include "core/error.h"
+#include "core/median.h"
 #include "core/parallel.h"
 #include "geometry/closest_point.h"
-#include "core/median.h"
 #include "geometry/edge_topology.h"
 #include "geometry/mesh_checks.h"
 #include "geometry/pseudo_normals.h"
