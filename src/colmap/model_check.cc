@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -9,6 +10,9 @@
 
 namespace glint::internal {
 namespace {
+
+// In units of the model: beyond, products of a few lengths overflow or vanish.
+constexpr double kFarthest = 1e30, kSmallest = 1e-30;
 
 std::string ImageRecord(const Image& image) { return fmt::format("image {} '{}'", image.id, image.name); }
 
@@ -95,16 +99,24 @@ void CheckImages(const ModelFiles& files, Model& model, Warnings& warnings) {
   }
 }
 
+bool IsWithinReach(const Eigen::Vector3d& x) { return x.allFinite() && x.cwiseAbs().maxCoeff() <= kFarthest; }
+
 void CheckPoints(const ModelFiles& files, Model& model, Warnings& warnings) {
   SortById(model.points, files.points, "point");
+  Eigen::AlignedBox3d box;
   for (Point3D& point : model.points) {
-    if (!point.xyz.allFinite()) {
-      throw InputError(
-          files.points.string(), fmt::format("point {}", point.id),
-          fmt::format("expected a finite position, found ({}, {}, {})", point.xyz.x(), point.xyz.y(), point.xyz.z()));
+    if (!IsWithinReach(point.xyz)) {
+      throw InputError(files.points.string(), fmt::format("point {}", point.id),
+                       fmt::format("expected a finite position within {:g} of the origin, found ({}, {}, {})",
+                                   kFarthest, point.xyz.x(), point.xyz.y(), point.xyz.z()));
     }
     if (!(std::isfinite(point.error_px) && point.error_px >= 0)) point.error_px = -1;
+    box.extend(point.xyz);
   }
+  if (!box.isEmpty() && box.sizes().maxCoeff() > 0 && box.sizes().maxCoeff() < kSmallest)
+    throw InputError(files.points.string(), "",
+                     fmt::format("expected points that lie apart by more than {:g}, found {:g}: scale the model up",
+                                 kSmallest, box.sizes().maxCoeff()));
   warnings.Add(
       "no points", [&] { return fmt::format("{}: the model has no 3D points", files.points.string()); },
       model.points.empty() ? 1 : 0);
@@ -115,12 +127,12 @@ void CheckPoints(const ModelFiles& files, Model& model, Warnings& warnings) {
 Rigid3d CheckedPose(const Eigen::Vector4d& wxyz, const Eigen::Vector3d& translation, const std::filesystem::path& file,
                     const std::string& record, Warnings& warnings) {
   constexpr double kRoundingOfLength = 1e-12, kNoteworthy = 1e-5;
-  if (!wxyz.allFinite() || !translation.allFinite()) {
+  if (!wxyz.allFinite() || !IsWithinReach(translation)) {
     throw InputError(
         file.string(), record,
-        fmt::format("expected a finite pose, found the quaternion ({}, {}, {}, {}) and the translation "
-                    "({}, {}, {})",
-                    wxyz[0], wxyz[1], wxyz[2], wxyz[3], translation.x(), translation.y(), translation.z()));
+        fmt::format("expected a finite pose within {:g} of the origin, found the quaternion ({}, {}, {}, {}) and the "
+                    "translation ({}, {}, {})",
+                    kFarthest, wxyz[0], wxyz[1], wxyz[2], wxyz[3], translation.x(), translation.y(), translation.z()));
   }
   const double length = wxyz.stableNorm();
   if (!(length > 1e-9)) {

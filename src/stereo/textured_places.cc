@@ -99,7 +99,7 @@ class Searcher {
     float contrast = 0;
     if (!Picture(reference, views[0], colors_, plane, 0, &contrast) || contrast < kLeastContrast) return std::nullopt;
     const double step = kStepPx * sample / WidestParallax(patch, views);
-    const int steps = std::min(kMaxSteps, static_cast<int>(std::ceil(reach_ / step)));
+    const int steps = static_cast<int>(std::min<double>(kMaxSteps, std::ceil(reach_ / step)));
     if (steps < 4) return std::nullopt;
     return Agree(plane, step, steps, Peaks(views, plane, step, steps));
   }
