@@ -1,22 +1,20 @@
 #include "stereo/hollows.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <optional>
 #include <utility>
 
 #include "core/parallel.h"
 #include "geometry/closest_point.h"
 #include "geometry/point_index.h"
-#include "sdf/field_mesh.h"
 #include "sdf/signed_distance.h"
+#include "stereo/cell_grid.h"
 #include "stereo/sight_judge.h"
 
 namespace glint {
 
+using internal::CellGrid;
 using internal::Colors;
 using internal::Judge;
 
@@ -70,9 +68,6 @@ std::vector<uint8_t> DoubtfulFaces(const std::vector<float>& spread, float thres
 
 enum class Cell : uint8_t { kUnknown, kOutside, kWall, kUnseen, kAlike, kCarved };
 
-constexpr std::array<std::array<int, 3>, 6> kAround = {
-    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
-
 TriangleMesh Without(const TriangleMesh& mesh, const std::vector<uint8_t>& left_out) {
   TriangleMesh out{mesh.vertices, {}, {}, {}, {}, {}};
   for (size_t f = 0; f < mesh.faces.size(); ++f)
@@ -92,18 +87,12 @@ class Carver {
         threshold_(threshold),
         distance_(mesh, "auto"),
         walls_(Without(mesh, open_)),
-        walls_query_(walls_) {
-    const Eigen::AlignedBox3d box = BoundingBox(mesh);
-    diagonal_ = Diagonal(mesh);
-    voxel_ = kVoxelRel * diagonal_;
-    origin_ = box.min() - Eigen::Vector3d::Constant(2 * voxel_);
-    for (int a = 0; a < 3; ++a) size_[a] = static_cast<int>(std::ceil(box.sizes()[a] / voxel_)) + 4;
-    const size_t count = static_cast<size_t>(size_[0]) * size_[1] * size_[2];
-    cells_.assign(count, Cell::kUnknown);
-    for (int a = 0; a < 3; ++a) lattice_[a] = 2 * size_[a] + 1;
-    spread_.assign(static_cast<size_t>(lattice_[0]) * lattice_[1] * lattice_[2], kUnmeasured);
-    depth_.assign(count, 0);
-  }
+        walls_query_(walls_),
+        diagonal_(Diagonal(mesh)),
+        grid_(BoundingBox(mesh), kVoxelRel * diagonal_),
+        cells_(grid_.num_cells(), Cell::kUnknown),
+        spread_(grid_.num_places(), kUnmeasured),
+        depth_(grid_.num_cells(), 0) {}
 
   void Carve(const Progress& progress) {
     std::vector<uint32_t> front = BehindOpenFaces();
@@ -115,7 +104,7 @@ class Carver {
       for (const uint32_t c : front) {
         if (cells_[c] != Cell::kCarved) continue;
         depth_[c] = depth;
-        ForNeighbors(c, [&](uint32_t n) {
+        grid_.ForNeighbors(c, [&](uint32_t n) {
           if (cells_[n] == Cell::kUnknown) next.push_back(n);
         });
       }
@@ -133,57 +122,22 @@ class Carver {
     const std::vector<uint8_t> air = AirBefore(deep);
     for (uint32_t c = 0; c < cells_.size(); ++c)
       if (deep[c] || air[c]) matter[c] = 0;
-    for (int pass = 0; pass < kSmoothingPasses; ++pass) Smooth(matter);
-    DenseField field{{size_[2], size_[1], size_[0]}, std::move(matter)};
-    Eigen::Affine3d world_from_index;
-    world_from_index.linear() = voxel_ * Eigen::Matrix3d::Identity();
-    world_from_index.linear().col(0).swap(world_from_index.linear().col(2));
-    world_from_index.translation() = origin_ + Eigen::Vector3d::Constant(voxel_ / 2);
-    TriangleMesh mesh = MeshOfField(field, world_from_index, 0.5);
-    for (Eigen::Vector3i& f : mesh.faces) std::swap(f[0], f[1]);  // the axes' order mirrored it
-    return mesh;
+    for (int pass = 0; pass < kSmoothingPasses; ++pass) grid_.Smooth(matter);
+    return grid_.Mesh(std::move(matter), 0.5);
   }
 
  private:
-  std::array<int, 3> Index(uint32_t c) const {
-    const int x = static_cast<int>(c % size_[0]), rest = static_cast<int>(c / size_[0]);
-    return {x, rest % size_[1], rest / size_[1]};
-  }
-  uint32_t CellAt(const std::array<int, 3>& i) const {
-    return static_cast<uint32_t>(i[0] + size_[0] * (i[1] + static_cast<size_t>(size_[1]) * i[2]));
-  }
-  Eigen::Vector3d Center(uint32_t c) const {
-    const std::array<int, 3> i = Index(c);
-    return origin_ + voxel_ * Eigen::Vector3d(i[0] + 0.5, i[1] + 0.5, i[2] + 0.5);
-  }
-  std::optional<uint32_t> At(const Eigen::Vector3d& x) const {
-    std::array<int, 3> i;
-    for (int a = 0; a < 3; ++a) {
-      i[a] = static_cast<int>(std::floor((x[a] - origin_[a]) / voxel_));
-      if (i[a] < 0 || i[a] >= size_[a]) return std::nullopt;
-    }
-    return CellAt(i);
-  }
-  template <class Visit>
-  void ForNeighbors(uint32_t c, const Visit& visit) const {
-    const std::array<int, 3> i = Index(c);
-    for (const auto& d : kAround) {
-      const std::array<int, 3> n = {i[0] + d[0], i[1] + d[1], i[2] + d[2]};
-      if (n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[0] < size_[0] && n[1] < size_[1] && n[2] < size_[2])
-        visit(CellAt(n));
-    }
-  }
-
   std::vector<uint32_t> BehindOpenFaces() const {
     std::vector<uint32_t> cells;
     for (size_t f = 0; f < open_.size(); ++f) {
       if (!open_[f]) continue;
       const Eigen::Vector3d a = mesh_.vertices[mesh_.faces[f][0]], b = mesh_.vertices[mesh_.faces[f][1]] - a,
                             c = mesh_.vertices[mesh_.faces[f][2]] - a;
-      const int steps = std::max(1, static_cast<int>(std::ceil(2 * std::max(b.norm(), c.norm()) / voxel_)));
+      const int steps = std::max(1, static_cast<int>(std::ceil(2 * std::max(b.norm(), c.norm()) / grid_.cell_size())));
       for (int i = 0; i <= steps; ++i)
         for (int j = 0; i + j <= steps; ++j) {
-          const auto cell = At(a + b * i / steps + c * j / steps - 0.75 * voxel_ * FaceNormal(mesh_, f));
+          const auto cell =
+              grid_.At(a + b * i / steps + c * j / steps - 0.75 * grid_.cell_size() * FaceNormal(mesh_, f));
           if (cell) cells.push_back(*cell);
         }
     }
@@ -192,40 +146,26 @@ class Carver {
     return cells;
   }
 
-  // The places that a cell is judged by: its centre and those of its sides, on a lattice of half voxels, so that the
-  // surface passes none of them far off.
-  std::array<size_t, 7> PlacesOf(uint32_t c) const {
-    const std::array<int, 3> i = Index(c);
-    const size_t dx = 1, dy = lattice_[0], dz = static_cast<size_t>(lattice_[0]) * lattice_[1];
-    const size_t middle = (2 * i[0] + 1) * dx + (2 * i[1] + 1) * dy + (2 * i[2] + 1) * dz;
-    return {middle, middle - dx, middle + dx, middle - dy, middle + dy, middle - dz, middle + dz};
-  }
-  Eigen::Vector3d PlaceAt(size_t p) const {
-    const size_t x = p % lattice_[0], rest = p / lattice_[0];
-    return origin_ + voxel_ / 2 *
-                         Eigen::Vector3d(static_cast<double>(x), static_cast<double>(rest % lattice_[1]),
-                                         static_cast<double>(rest / lattice_[1]));
-  }
-
   void Measure(const std::vector<uint32_t>& front) {
     std::vector<size_t> todo;
     for (const uint32_t c : front)
-      for (const size_t p : PlacesOf(c))
+      for (const size_t p : grid_.PlacesOf(c))
         if (spread_[p] == kUnmeasured) todo.push_back(p);
     std::sort(todo.begin(), todo.end());
     todo.erase(std::unique(todo.begin(), todo.end()), todo.end());
     ParallelFor(todo.size(), kGrain, [&](size_t i) {
-      Colors colors = judge_.Through(PlaceAt(todo[i]), open_);
+      Colors colors = judge_.Through(grid_.PlaceAt(todo[i]), open_);
       spread_[todo[i]] = ColorSpread(colors, kFewestViews);
     });
   }
 
+  // Judged by its centre and those of its sides, so that the surface passes none of them far off.
   Cell Kind(uint32_t c) const {
-    const auto closest = distance_.FindClosest(Center(c));
+    const auto closest = distance_.FindClosest(grid_.Center(c));
     if (closest.distance > 0) return Cell::kOutside;
-    if (InWall(Center(c))) return Cell::kWall;
+    if (InWall(grid_.Center(c))) return Cell::kWall;
     float least = std::numeric_limits<float>::infinity();
-    for (const size_t p : PlacesOf(c)) least = std::min(least, spread_[p]);
+    for (const size_t p : grid_.PlacesOf(c)) least = std::min(least, spread_[p]);
     return std::isinf(least) ? Cell::kUnseen : least > threshold_ ? Cell::kCarved : Cell::kAlike;
   }
 
@@ -239,7 +179,7 @@ class Carver {
   Lining LiningOf(const std::vector<uint32_t>& piece) const {
     std::vector<uint32_t> around;
     for (const uint32_t c : piece)
-      ForNeighbors(c, [&](uint32_t n) {
+      grid_.ForNeighbors(c, [&](uint32_t n) {
         if (cells_[n] != Cell::kCarved && cells_[n] != Cell::kOutside) around.push_back(n);
       });
     std::sort(around.begin(), around.end());
@@ -248,7 +188,7 @@ class Carver {
     for (const uint32_t n : around) {
       lining.alike += cells_[n] == Cell::kAlike;
       if (cells_[n] != Cell::kWall) continue;
-      lining.unseen += std::isinf(spread_of_face_[distance_.FindClosest(Center(n)).closest.face]);
+      lining.unseen += std::isinf(spread_of_face_[distance_.FindClosest(grid_.Center(n)).closest.face]);
     }
     const double count = std::max<double>(1, static_cast<double>(around.size()));
     return {lining.alike / count, lining.unseen / count};
@@ -264,7 +204,7 @@ class Carver {
       std::vector<uint32_t> piece = {start};
       seen[start] = 1;
       for (size_t i = 0; i < piece.size(); ++i)
-        ForNeighbors(piece[i], [&](uint32_t n) {
+        grid_.ForNeighbors(piece[i], [&](uint32_t n) {
           if (cells_[n] == Cell::kCarved && !seen[n]) {
             seen[n] = 1;
             piece.push_back(n);
@@ -273,7 +213,9 @@ class Carver {
       int depth = 0;
       for (const uint32_t c : piece) depth = std::max(depth, depth_[c]);
       const Lining lining = LiningOf(piece);
-      if (depth * voxel_ < kMinDepthRel * diagonal_ || lining.alike < kMinAlike || lining.unseen > kMaxUnseen) continue;
+      if (depth * grid_.cell_size() < kMinDepthRel * diagonal_ || lining.alike < kMinAlike ||
+          lining.unseen > kMaxUnseen)
+        continue;
       ++s.num_hollows;
       for (const uint32_t c : piece) deep[c] = 1;
     }
@@ -286,31 +228,17 @@ class Carver {
     for (int pass = 0; pass < kStandOut; ++pass) {
       std::vector<uint8_t> wider = near;
       for (uint32_t c = 0; c < near.size(); ++c)
-        if (near[c]) ForNeighbors(c, [&](uint32_t n) { wider[n] = 1; });
+        if (near[c]) grid_.ForNeighbors(c, [&](uint32_t n) { wider[n] = 1; });
       near = std::move(wider);
     }
     ParallelFor(near.size(), 1 << 10, [&](size_t c) {
       if (!near[c]) return;
-      const Eigen::Vector3d x = Center(static_cast<uint32_t>(c));
+      const Eigen::Vector3d x = grid_.Center(static_cast<uint32_t>(c));
       const bool free = cells_[c] == Cell::kUnknown || cells_[c] == Cell::kOutside;
       const auto closest = distance_.FindClosest(x);
       near[c] = free && closest.distance > 0 && open_[closest.closest.face] && !InWall(x);
     });
     return near;
-  }
-
-  // Binomial, along each axis.
-  void Smooth(std::vector<float>& values) const {
-    const std::array<size_t, 3> stride = {1, static_cast<size_t>(size_[0]), static_cast<size_t>(size_[0]) * size_[1]};
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<float> out = values;
-      ParallelFor(values.size(), 1 << 14, [&](size_t c) {
-        const int i = Index(static_cast<uint32_t>(c))[axis];
-        if (i > 0 && i + 1 < size_[axis])
-          out[c] = 0.25F * values[c - stride[axis]] + 0.5F * values[c] + 0.25F * values[c + stride[axis]];
-      });
-      values = std::move(out);
-    }
   }
 
   const Judge& judge_;
@@ -321,9 +249,8 @@ class Carver {
   SignedDistanceQuery distance_;
   TriangleMesh walls_;  // the faces that are not open
   ClosestPointQuery walls_query_;
-  double diagonal_ = 0, voxel_ = 0;
-  Eigen::Vector3d origin_;
-  std::array<int, 3> size_{}, lattice_{};
+  double diagonal_;
+  CellGrid grid_;
   std::vector<Cell> cells_;
   std::vector<float> spread_;
   std::vector<int> depth_;
