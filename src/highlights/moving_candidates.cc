@@ -24,7 +24,7 @@ Judged Judge(const Scene& scene, const ViewBrightness& brightness, const SeedSur
   const auto ray = view.RayThrough(h.px);
   if (!ray) return judged;
   const auto samples = surface.Neighbourhood(view.Center(), *ray);
-  if (samples.empty() || samples.front().off_center > 0) return judged;
+  if (samples.empty() || samples.front().off_center > 0 || samples.front().fine) return judged;
   judged.view_cos = -ray->dot(samples.front().normal);
   if (judged.view_cos < std::cos(kMaxViewAngleDeg * M_PI / 180)) return judged;
   const auto kept = [&](const Light* light) {

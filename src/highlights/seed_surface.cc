@@ -41,6 +41,8 @@ SeedSurface::SeedSurface(const TriangleMesh& mesh, const std::vector<ScenePoint>
       center_(BoundingBox(mesh).center()),
       diagonal_(Diagonal(mesh)),
       max_error_world_(max_error_world) {
+  for (const auto& [name, values] : mesh.scalars)
+    if (name == kFineScalar) fine_.assign(values.begin(), values.end());
   const size_t stride = points.size() / kMaxPoints + 1;
   for (size_t i = 0; i < points.size(); i += stride) points_.push_back(points[i].position);
   spacing_scale_ = std::sqrt(1.0 / stride);
@@ -64,7 +66,9 @@ std::optional<SurfaceSample> SeedSurface::Meet(const Eigen::Vector3d& origin, co
   const Eigen::Vector3i& f = faces_[hit->face];
   Eigen::Vector3d normal = (1 - hit->u - hit->v) * normals_[f[0]] + hit->u * normals_[f[1]] + hit->v * normals_[f[2]];
   if (normal.norm() < 1e-6) normal = hit->normal;
-  return SurfaceSample{hit->position, normal.normalized()};
+  SurfaceSample sample{hit->position, normal.normalized()};
+  for (int k = 0; k < 3 && !fine_.empty(); ++k) sample.fine |= fine_[f[k]] != 0;
+  return sample;
 }
 
 std::vector<SurfaceSample> SeedSurface::Neighbourhood(const Eigen::Vector3d& origin,

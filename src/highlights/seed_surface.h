@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -11,11 +12,15 @@
 
 namespace glint {
 
+// The seed's attribute that is 1 where it is finer than fairing makes it: rims and hollows. Their normals are rough.
+inline constexpr const char* kFineScalar = "fine";
+
 struct SurfaceSample {
   Eigen::Vector3d position;
   Eigen::Vector3d normal;   // unit, smoothed over the seed's facets, outward
   double spread_world = 0;  // over how wide a patch the seed's normals say something about this place
   double error_world = 0;   // how far the seed may be off here
+  bool fine = false;        // a rim or a hollow (kFineScalar)
   double off_center = 0;    // how far from the central ray, fraction of the spread
 };
 
@@ -46,6 +51,7 @@ class SeedSurface {
 
   std::vector<Eigen::Vector3i> faces_;
   std::vector<Eigen::Vector3d> normals_;  // at the vertices
+  std::vector<uint8_t> fine_;             // of the vertices
   RayCaster caster_;
   Eigen::Vector3d center_;
   double diagonal_;

@@ -44,8 +44,11 @@ class SomeImages : public ImageSource {
 }  // namespace
 
 SightColors::SightColors(const ImageSource& images, size_t most_views, size_t memory_bytes, Progress& progress)
-    : maps_(std::make_unique<ViewMaps>(SomeImages(images, most_views), Encoded, memory_bytes, "colours of the views",
-                                       progress)) {}
+    : maps_(std::make_unique<ViewMaps>(
+          SomeImages(images, most_views), Encoded,
+          // It is shared out among all views, of which only these take their share.
+          memory_bytes * std::max<size_t>(1, images.size() / std::max<size_t>(1, most_views)), "colours of the views",
+          progress)) {}
 
 SightColors::~SightColors() = default;
 

@@ -11,6 +11,7 @@
 #include "core/options.h"
 #include "core/progress.h"
 #include "geometry/triangle_mesh.h"
+#include "highlights/seed_surface.h"
 #include "io/image_source.h"
 #include "seed/fair.h"
 #include "seed/object_choice.h"
@@ -43,12 +44,9 @@ enum class PointFate : uint8_t {
   kVirtual,
 };
 
-// The name of `smooth`'s attribute that is 1 where it is finer than fairing makes it: rims and hollows.
-inline constexpr const char* kFineScalar = "fine";
-
 struct SeedResult {
   TriangleMesh mesh;                   // the sparse surface as it is: closed, oriented outward, one piece
-  TriangleMesh smooth;                 // the same, faired through the points: what the level set starts on
+  TriangleMesh smooth;                 // the same, faired through the points: what the level set starts on; kFineScalar
   std::vector<uint8_t> point_used;     // per scene point: 1 for a reliable point of the object's surface
   std::vector<PointFate> fate;         // per scene point
   std::vector<OutlineSample> outline;  // of the object, as far as the views confirm each other
