@@ -143,7 +143,7 @@ class Case {
 };
 
 TEST(Fuzz, NastyMeshes) {
-  const double seconds = Number("GLINT_FUZZ_SECONDS", 5), begin = CpuSeconds();
+  const double seconds = Number("GLINT_FUZZ_SECONDS", 3), begin = CpuSeconds();
   const unsigned first = static_cast<unsigned>(Number("GLINT_FUZZ_SEED", 1));
   const ThreadLimit one_core(1);
   unsigned seed = first;
