@@ -1,10 +1,12 @@
 // A shell script in place of the program `colmap`, which plays one part at a time.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace glint::testing_support {
@@ -60,11 +62,17 @@ class FakeColmap {
 };
 
 // Whether the process runs whose number the file holds; one that has ended and waits to be collected does not.
-inline bool Runs(const std::filesystem::path& pid_file) {
+inline bool RunsNow(const std::filesystem::path& pid_file) {
   std::string pid, program, state;
   std::ifstream(pid_file) >> pid;
   std::ifstream("/proc/" + pid + "/stat") >> pid >> program >> state;
   return !state.empty() && state != "Z";
+}
+
+// Whether it goes on for seconds: a signal that was sent ends a process a moment later.
+inline bool Runs(const std::filesystem::path& pid_file) {
+  for (int i = 0; i < 250 && RunsNow(pid_file); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  return RunsNow(pid_file);
 }
 
 }  // namespace glint::testing_support
