@@ -19,7 +19,7 @@ class SmallScene : public ProgramTest {
   SmallScene() {
     std::filesystem::copy(testing_support::SharedFolder("small_scene", Make), folder_ / "p",
                           std::filesystem::copy_options::recursive);
-    Write("c.yaml", "refine:\n  voxel_rel: 0.03\n  levels: 1\n");
+    Write("c.yaml", "seed:\n  smooth:\n    edge_rel: 0.03\nrefine:\n  voxel_rel: 0.03\n  levels: 1\n");
     Write("ball.off", CoarseBall());
   }
 

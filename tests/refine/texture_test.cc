@@ -32,7 +32,7 @@ TEST(RefineByTexture, BringsWavesDownToTheSurface) {
   RefineOptions options;
   options.voxel_rel = 1.0 / 64;
   options.levels = 2;
-  options.max_iterations = 2;
+  options.max_iterations = 1;
   const MemoryImages images(testing::Photographs(scene, testing::Texture));
   input.images = &images;
   const auto error = [&](bool use) {
