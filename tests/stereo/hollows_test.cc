@@ -13,7 +13,7 @@
 #include "core/parallel.h"
 #include "io/project_images.h"
 #include "sdf/csg.h"
-#include "tests/seed/simulated_scene.h"
+#include "tests/stereo/textured_ball.h"
 #include "tests/support/ball_mesh.h"
 
 namespace glint {
@@ -45,8 +45,7 @@ using Lining = std::function<Eigen::Vector3d(const Eigen::Vector3d& x, size_t vi
 
 class HollowsTest : public ::testing::Test {
  protected:
-  HollowsTest() : scene_(DomeScene(kViews, 4)) {
-    for (View& view : scene_.views) view.camera = {1, CameraModel::kPinhole, 320, 240, {360, 360, 160, 120}};
+  HollowsTest() : scene_(testing::BallScene(kViews)) {
     Scene points = scene_;
     AddSphere(points, 400);
     for (const ScenePoint& p : points.points)
