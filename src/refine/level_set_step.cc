@@ -114,7 +114,9 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
     weights.pull[i] = known ? static_cast<float>(area * pull) : 0;
     weights.pull_target[i] = static_cast<float>(value);
     if (input.bend_like_seed)
-      weights.reference[i] = known ? SmoothValue(input.seed, x) : std::numeric_limits<float>::quiet_NaN();
+      weights.reference[i] = !known ? std::numeric_limits<float>::quiet_NaN()
+                             : hold ? static_cast<float>(value)
+                                    : SmoothValue(input.seed, x);
   });
   return weights;
 }

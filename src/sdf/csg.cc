@@ -54,4 +54,14 @@ TriangleMesh Difference(const TriangleMesh& a, const TriangleMesh& b, double vox
   });
 }
 
+TriangleMesh Closing(const TriangleMesh& mesh, double voxel_size_world, double radius_world) {
+  const Eigen::Vector3d center = BoundingBox(mesh).center();
+  const double radius = radius_world / voxel_size_world;
+  const SdfOptions wide{.half_width_voxels = radius + 2};
+  const TriangleMesh dilated = ExtractMesh(MeshToLevelSet(InVoxels(mesh, center, voxel_size_world), 1, wide), radius);
+  TriangleMesh out = ExtractMesh(MeshToLevelSet(dilated, 1, wide), -radius);
+  for (Eigen::Vector3d& x : out.vertices) x = center + voxel_size_world * x;
+  return out;
+}
+
 }  // namespace glint

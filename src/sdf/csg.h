@@ -1,4 +1,4 @@
-// Two solids joined, or one without the other.
+// Two solids joined, one without the other, one with its gaps filled.
 #pragma once
 
 #include "geometry/triangle_mesh.h"
@@ -11,5 +11,9 @@ namespace glint {
 TriangleMesh Union(const TriangleMesh& a, const TriangleMesh& b, double voxel_size_world);
 TriangleMesh Difference(const TriangleMesh& a, const TriangleMesh& b, double voxel_size_world,
                         double rounding_world = 0);
+
+// The solid with its gaps and tunnels filled as far as no ball of `radius_world` (up to four voxels) fits into them
+// from outside: dilated, and eroded again.
+TriangleMesh Closing(const TriangleMesh& mesh, double voxel_size_world, double radius_world);
 
 }  // namespace glint

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
 #include "geometry/closest_point.h"
 #include "highlights/sight_colors.h"
 #include "sdf/csg.h"
+#include "seed/changed_parts.h"
 #include "seed/outline_rim.h"
 #include "seed/rim_points.h"
 #include "seed/shape.h"
@@ -31,7 +33,9 @@ constexpr double kRoundingRel = 0.012;  // of the diagonal: of a hollow's edge, 
 constexpr double kLeastHollow = 1e-3;   // of the volume: less is for the refinement
 constexpr double kLeastTaken = 0.25;    // of the hollows' volume: less, and nothing was opened
 constexpr double kFineRel = 0.003;      // of the diagonal
-constexpr int kSubdivisions = 2;        // of the smooth surface: its facets must not show at the finest voxels
+constexpr std::array<double, 3> kClosings = {0, 1.5, 3};  // voxels
+constexpr double kStayRel = 0.01;  // of the diagonal: what is narrower in a hollow's lining is noise
+constexpr int kSubdivisions = 2;   // of the smooth surface: its facets must not show at the finest voxels
 
 double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
   const ClosestPointQuery query(mesh);
@@ -124,12 +128,20 @@ TriangleMesh UnlessTorn(const TriangleMesh& before, TriangleMesh after) {
 TriangleMesh WithRim(const Scene& scene, const Silhouettes& silhouettes, const TriangleMesh& smooth) {
   const double voxel = kVoxelRel * Diagonal(smooth);
   const TriangleMesh rim = MissingRim(scene, silhouettes, smooth, voxel);
-  return rim.empty() ? smooth : UnlessTorn(smooth, LargestPiece(Union(smooth, rim, voxel)));
+  if (rim.empty()) return smooth;
+  const TriangleMesh joined = Union(smooth, rim, voxel);
+  // A chink between the two may make a tunnel.
+  for (const double closing : kClosings) {
+    TriangleMesh with = LargestPiece(closing > 0 ? Closing(joined, voxel, closing * voxel) : joined);
+    if (GenusOf(with) <= GenusOf(smooth)) return SmoothChangedParts(scene, silhouettes.outline(), smooth, with, 0);
+  }
+  return smooth;
 }
 
 // Hollows that it spans, which nothing but their colours shows, are taken out of it.
 TriangleMesh WithoutHollows(const Scene& scene, const SparseSurface& sparse, const TriangleMesh& smooth,
-                            const ImageSource& images, SeedSummary& s, Progress& progress) {
+                            const std::vector<OutlineSample>& outline, const ImageSource& images, SeedSummary& s,
+                            Progress& progress) {
   std::vector<Eigen::Vector3d> known;
   for (const int point : sparse.scene_point)
     if (point >= 0) known.push_back(scene.points[point].position);
@@ -141,7 +153,7 @@ TriangleMesh WithoutHollows(const Scene& scene, const SparseSurface& sparse, con
       smooth, LargestPiece(Difference(smooth, hollows, kVoxelRel * Diagonal(smooth), kRoundingRel * Diagonal(smooth))));
   const double taken = SignedVolume(smooth) - SignedVolume(opened);
   s.hollows_opened = taken > kLeastTaken * volume;
-  return s.hollows_opened ? opened : smooth;
+  return s.hollows_opened ? SmoothChangedParts(scene, outline, smooth, opened, kStayRel * Diagonal(smooth)) : smooth;
 }
 
 // Where a surface is not the faired one.
@@ -224,7 +236,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   const TriangleMesh faired = SubdivideSmoothly(shape.smooth, kSubdivisions);
   out.smooth = s.outlines_used ? WithRim(scene, silhouettes, faired) : faired;
   if (images && options.open_hollows)
-    out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, *images, s, progress);
+    out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, out.outline, *images, s, progress);
   if (out.smooth.vertices.size() != faired.vertices.size()) MarkFine(faired, out.smooth);
   for (int point : shape.sparse.scene_point)
     if (point >= 0) out.point_used[point] = 1;

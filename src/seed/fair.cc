@@ -12,15 +12,14 @@
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
 #include "seed/remesh.h"
+#include "seed/thin_plate.h"
 
 namespace glint {
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
 using Triplet = Eigen::Triplet<double>;
 
-constexpr double kMinSigmaRel = 5e-4;  // of the diagonal: no sparse point is surer than this
-constexpr double kMinCot = 0.05, kMaxCot = 3;
+constexpr double kMinSigmaRel = 5e-4;    // of the diagonal: no sparse point is surer than this
 constexpr double kInertia = 2e-6;        // of the pull of points: keeps the system well posed
 constexpr double kUnseenCosine = -0.25;  // of the normal with the ways to all cameras
 constexpr double kRestLength = 1;        // spacings over which the natural curvature is even
@@ -28,29 +27,6 @@ constexpr double kMinBelief = 1e-3;      // in a curvature where nothing is know
 constexpr double kFlatness = 0.1;  // belief in a flat surface, where outlines are known: what they leave open is a lid
 constexpr double kStiffStart = 2.5;  // times the smoothing asked for
 constexpr double kTrustedRange = 4;  // usual distances: farther attachments lose most of their weight
-
-// Cotangent weights, within what nearly equilateral triangles have: a sliver must neither turn them negative nor
-// dominate.
-struct Laplacian {
-  Sparse stiffness;  // symmetric, rows sum to zero
-  double area = 0;   // a vertex
-};
-
-Laplacian EvenLaplacian(const TriangleMesh& mesh) {
-  const int n = static_cast<int>(mesh.vertices.size());
-  Laplacian out{Sparse(n, n), SurfaceArea(mesh) / n};
-  std::vector<Triplet> entries;
-  for (const Eigen::Vector3i& f : mesh.faces)
-    for (int k = 0; k < 3; ++k) {
-      const int i = f[(k + 1) % 3], j = f[(k + 2) % 3];
-      const Eigen::Vector3d a = mesh.vertices[i] - mesh.vertices[f[k]], b = mesh.vertices[j] - mesh.vertices[f[k]];
-      const double area2 = a.cross(b).norm();
-      const double w = 0.5 * std::clamp(area2 > 0 ? a.dot(b) / area2 : kMaxCot, kMinCot, kMaxCot);
-      entries.insert(entries.end(), {{i, j, -w}, {j, i, -w}, {i, i, w}, {j, j, w}});
-    }
-  out.stiffness.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
 
 std::vector<Attachment> Leading(const std::vector<Attachment>& attachments) {
   std::vector<Attachment> out;
@@ -111,28 +87,23 @@ std::vector<double> Trust(const std::vector<Attachment>& attachments, const std:
   return trust;
 }
 
-// The thin-plate matrix λ Lᵀ A⁻¹ L.
-Sparse ThinPlate(const Laplacian& laplacian, double lambda) {
-  return Sparse(laplacian.stiffness * laplacian.stiffness) * (lambda / laplacian.area);
-}
-
 // How well the surface is known at its vertices, 0 … 1: the density of the attachments, spread over `length`, against
 // `density` (attachments an area).
-Eigen::VectorXd Knowledge(const std::vector<Foot>& feet, const std::vector<double>& trust, const Laplacian& laplacian,
-                          double length, double density) {
+Eigen::VectorXd Knowledge(const std::vector<Foot>& feet, const std::vector<double>& trust,
+                          const EvenLaplacian& laplacian, double length, double density) {
   Eigen::VectorXd deposits = Eigen::VectorXd::Zero(laplacian.stiffness.rows());
   for (size_t i = 0; i < feet.size(); ++i)
     for (int k = 0; k < 3; ++k) deposits[feet[i].face[k]] += trust[i] * feet[i].weights[k] / (laplacian.area * density);
-  Sparse spread = laplacian.stiffness * (length * length / laplacian.area);
+  SparseMatrix spread = laplacian.stiffness * (length * length / laplacian.area);
   for (int v = 0; v < deposits.size(); ++v) spread.coeffRef(v, v) += 1;
-  const Eigen::VectorXd known = Eigen::SimplicialLDLT<Sparse>(spread).solve(deposits);
+  const Eigen::VectorXd known = Eigen::SimplicialLDLT<SparseMatrix>(spread).solve(deposits);
   return known.cwiseMax(0).cwiseMin(1);
 }
 
 // What L x is to be: the mean curvature normal of the surface as it stands, with the curvature diffused over `length`
 // where it is known and continued from there where it is not. A plate that is bent by nature keeps the bend of its
 // surroundings where no point holds it; a flat one would flatten.
-Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const Laplacian& laplacian, double length,
+Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const EvenLaplacian& laplacian, double length,
                                const Eigen::VectorXd& known, double flatness) {
   const int n = static_cast<int>(mesh.vertices.size());
   Eigen::MatrixX3d x(n, 3);
@@ -140,13 +111,13 @@ Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const Laplacian& laplac
   const Eigen::MatrixX3d bend = laplacian.stiffness * x;
   const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
   Eigen::VectorXd curvature(n);
-  Sparse diffusion = laplacian.stiffness * (length * length / laplacian.area);
+  SparseMatrix diffusion = laplacian.stiffness * (length * length / laplacian.area);
   for (int v = 0; v < n; ++v) {
     const double belief = std::max(known[v] * known[v], kMinBelief);
     curvature[v] = belief * bend.row(v).dot(normals[v]);
     diffusion.coeffRef(v, v) += belief + flatness;
   }
-  const Eigen::VectorXd smooth = Eigen::SimplicialLDLT<Sparse>(diffusion).solve(curvature);
+  const Eigen::VectorXd smooth = Eigen::SimplicialLDLT<SparseMatrix>(diffusion).solve(curvature);
   Eigen::MatrixX3d rest(n, 3);
   for (int v = 0; v < n; ++v) rest.row(v) = smooth[v] * normals[v];
   return rest;
@@ -232,7 +203,7 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
   const double min_sigma = kMinSigmaRel * diagonal;
   for (int round = 0; round < options.rounds; ++round) {
     const double area = SurfaceArea(out.mesh);
-    const Laplacian laplacian = EvenLaplacian(out.mesh);
+    const EvenLaplacian laplacian = MakeEvenLaplacian(out.mesh);
     const std::vector<Foot> feet = FeetOf(attachments, out.mesh);
     // The first distances are those to flat facets: large also for good points.
     if (round > 0) out.trust = Trust(attachments, feet, min_sigma);
@@ -253,7 +224,7 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     Springs springs(n);
     HoldUnseen(out.mesh, raw, context, spring * density * laplacian.area, options.stay, springs);
     for (size_t i = 0; i < feet.size(); ++i) springs.Attach(feet[i], attachments[i].position, weights[i]);
-    Sparse system(n, n);
+    SparseMatrix system(n, n);
     system.setFromTriplets(springs.entries.begin(), springs.entries.end());
     system += ThinPlate(laplacian, lambda);
     if (round > 0) {
@@ -263,7 +234,7 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
       springs.right +=
           lambda / laplacian.area * (laplacian.stiffness * RestCurvature(out.mesh, laplacian, length, known, flatness));
     }
-    const Eigen::SimplicialLDLT<Sparse> solver(system);
+    const Eigen::SimplicialLDLT<SparseMatrix> solver(system);
     if (solver.info() != Eigen::Success) return out;  // singular: what stands so far is closed and sound
     const Eigen::MatrixX3d x = solver.solve(springs.right);
     if (!x.allFinite()) return out;

@@ -214,6 +214,39 @@ class Touching : public ImplicitShape {
   double lipschitz_ = 1;
 };
 
+// A thick bowl of revolution with a round lip: all within `half_wall` of a circle's arc turned around the axis.
+class Bowl : public ImplicitShape {
+ public:
+  explicit Bowl(uint64_t seed) {
+    Random random({seed, 17});
+    half_wall_ = random.Uniform(0.04, 0.06);
+    arc_ = random.Uniform(0.86, 0.92);
+    const double rim_angle = random.Uniform(1.3, 1.75);  // from the bottom
+    rim_ = arc_ * Eigen::Vector2d(std::sin(rim_angle), -std::cos(rim_angle));
+    lift_ = 0.5 * (arc_ - rim_.y());  // the middle between bottom and rim is the origin
+    radius_ = std::hypot(rim_.x(), rim_.y() + lift_) + half_wall_;
+  }
+  double Value(const Vector3d& x) const override { return FromArc(x).norm() - half_wall_; }
+  Vector3d Gradient(const Vector3d& x) const override {
+    const Eigen::Vector2d away = FromArc(x).normalized();
+    const double radius = std::max(std::hypot(x.x(), x.y()), 1e-12);
+    return {away.x() * x.x() / radius, away.x() * x.y() / radius, away.y()};
+  }
+
+ private:
+  // From the closest place on the arc, in the half plane through the axis and x.
+  Eigen::Vector2d FromArc(const Vector3d& x) const {
+    const Eigen::Vector2d q(std::hypot(x.x(), x.y()), x.z() - lift_);
+    const bool above_rim = rim_.x() * q.y() > rim_.y() * q.x();
+    if (above_rim) return q - rim_;
+    const double distance = std::max(q.norm(), 1e-12);
+    return q * (1 - arc_ / distance);
+  }
+
+  double half_wall_, arc_, lift_;
+  Eigen::Vector2d rim_;
+};
+
 class PlacedShape : public ImplicitShape {
  public:
   PlacedShape(std::shared_ptr<const ImplicitShape> shape, const Similarity& world_from_shape)
@@ -236,8 +269,8 @@ class PlacedShape : public ImplicitShape {
 }  // namespace
 
 const std::vector<std::string_view>& ShapeNames() {
-  static const std::vector<std::string_view> names = {"sphere", "ellipsoid", "torus",   "hood",
-                                                      "blob",   "pane",      "touching"};
+  static const std::vector<std::string_view> names = {"sphere", "ellipsoid", "torus",    "hood",
+                                                      "blob",   "pane",      "touching", "bowl"};
   return names;
 }
 
@@ -249,6 +282,7 @@ std::unique_ptr<ImplicitShape> MakeShape(std::string_view name, uint64_t seed) {
   if (name == "blob") return std::make_unique<Blob>(seed);
   if (name == "pane") return MakePane(seed);
   if (name == "touching") return std::make_unique<Touching>(seed);
+  if (name == "bowl") return std::make_unique<Bowl>(seed);
   throw InputError("", "scene", fmt::format("expected one of {}, found \"{}\"", fmt::join(ShapeNames(), ", "), name));
 }
 

@@ -30,10 +30,10 @@ class ImplicitShape {
   double radius_ = 1;
 };
 
-// "sphere", "ellipsoid", "torus", "hood", "blob", "pane", "touching".
+// "sphere", "ellipsoid", "torus", "hood", "blob", "pane", "touching", "bowl".
 const std::vector<std::string_view>& ShapeNames();
 
-// The seed varies the free-form shapes, and proportions of the ellipsoid and the torus; the sphere is always the unit
+// The seed varies the free-form shapes, and proportions of ellipsoid, torus and bowl; the sphere is always the unit
 // sphere. Throws InputError for an unknown name.
 std::unique_ptr<ImplicitShape> MakeShape(std::string_view name, uint64_t seed);
 

@@ -66,11 +66,37 @@ class FromPhotographs : public ProgramTest {
       EXPECT_THAT(ReadText(Path("info")), HasSubstr(" loaded has " + std::to_string(mesh.vertices.size()) + " vn " +
                                                     std::to_string(mesh.faces.size()) + " fn"));
     }
+    ExpectBlenderReadsIt(mesh);
     if (std::system("command -v assimp > /dev/null 2>&1") != 0) return;
     for (const char* name : {"out/mesh.ply", "out/mesh.obj", "out/mesh.glb"}) {
       EXPECT_EQ(std::system(("assimp info '" + Path(name) + "' > '" + Path("info") + "' 2>&1").c_str()), 0) << name;
       EXPECT_THAT(ReadText(Path("info")), HasSubstr(" " + std::to_string(mesh.vertices.size()) + "\n")) << name;
     }
+  }
+
+  // Meshes with their colours, and the field by the name of its grid.
+  void ExpectBlenderReadsIt(const TriangleMesh& mesh) const {
+    if (std::system("command -v blender > /dev/null 2>&1") != 0) return;
+    Write("read.py", R"(
+import bpy, sys
+folder = sys.argv[-1]
+for name, read in (("mesh.ply", bpy.ops.import_mesh.ply), ("mesh.obj", bpy.ops.wm.obj_import),
+                   ("mesh.glb", bpy.ops.import_scene.gltf)):
+    read(filepath=folder + "/" + name)
+    mesh = [o for o in bpy.context.selected_objects if o.type == "MESH"][0].data
+    print("read", name, len(mesh.vertices), len(mesh.polygons), len(mesh.color_attributes))
+bpy.ops.object.volume_import(filepath=folder + "/sdf.vdb")
+grids = bpy.context.object.data.grids
+grids.load()
+print("read", *[(g.name, g.data_type, g.channels) for g in grids])
+)");
+    const std::string command = "timeout 120 blender --background --factory-startup --python-exit-code 1 --python '" +
+                                Path("read.py") + "' -- '" + Path("out") + "' > '" + Path("info") + "' 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0) << ReadText(Path("info"));
+    const std::string counts = std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size());
+    for (const std::string name : {"mesh.ply", "mesh.obj", "mesh.glb"})
+      EXPECT_THAT(ReadText(Path("info")), HasSubstr("read " + name + " " + counts + " 1"));
+    EXPECT_THAT(ReadText(Path("info")), HasSubstr("read ('surface', 'FLOAT', 1)"));
   }
 
   static inline fs::path project_;

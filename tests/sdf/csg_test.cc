@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "geometry/components.h"
 #include "geometry/edge_topology.h"
 #include "sdf/field_mesh.h"
 #include "tests/support/ball_mesh.h"
@@ -32,6 +33,19 @@ TEST_F(Csg, TakesOneFromTheOther) {
   EXPECT_TRUE(EdgesBalanced(rest));
   EXPECT_NEAR(SignedVolume(rest), kBall - kLens, 0.005 * kBall);
   EXPECT_TRUE(Difference(a_, BallMesh({0, 0, 0}, 2, 60), 0.05).empty());
+}
+
+TEST_F(Csg, ClosesWhatIsNarrow) {
+  const TriangleMesh apart = Union(a_, BallMesh({0, 0, 2.05}, 1, 60), 0.02);
+  const auto pieces = [](const TriangleMesh& mesh) {
+    return FindComponents(mesh, BuildEdgeTopology(mesh)).list.size();
+  };
+  EXPECT_EQ(pieces(apart), 2u);
+  const TriangleMesh closed = Closing(apart, 0.02, 0.06);
+  EXPECT_EQ(pieces(closed), 1u);
+  EXPECT_TRUE(EdgesBalanced(closed));
+  EXPECT_NEAR(SignedVolume(closed), 2 * kBall, 0.01 * kBall);
+  EXPECT_EQ(pieces(Closing(apart, 0.02, 0.02)), 2u);
 }
 
 TEST(FieldMesh, IsTheLevelOfTheField) {

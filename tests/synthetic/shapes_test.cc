@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(AllShapes, ShapeTest,
 TEST(Shapes, UnknownNameIsAnInputError) { EXPECT_THROW(MakeShape("cube", 1), InputError); }
 
 TEST(Shapes, SeedsVaryTheFreeForms) {
-  for (std::string_view name : {"hood", "blob", "touching", "pane"}) {
+  for (std::string_view name : {"hood", "blob", "touching", "pane", "bowl"}) {
     const auto a = MakeShape(name, 1), b = MakeShape(name, 2), again = MakeShape(name, 1);
     const Vector3d x(0.3, 0.2, 0.4);
     EXPECT_NE(a->Value(x), b->Value(x)) << name;
