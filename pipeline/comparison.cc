@@ -36,6 +36,18 @@ Json ToJson(const ErrorStats& s) {
   return {{"count", s.count}, {"mean", s.mean}, {"rms", s.rms}, {"median", s.median}, {"p95", s.p95}, {"max", s.max}};
 }
 
+// As ReadSimilarity() reads it.
+Json ToJson(const Eigen::Affine3d& similarity) {
+  const double scale = std::cbrt(similarity.linear().determinant());
+  Json json = {{"scale", scale}, {"R", Json::array()}, {"t", Json::array()}};
+  for (int r = 0; r < 3; ++r) {
+    json["R"].push_back(Json::array());
+    for (int c = 0; c < 3; ++c) json["R"].back().push_back(similarity.linear()(r, c) / scale);
+    json["t"].push_back(similarity.translation()[r]);
+  }
+  return json;
+}
+
 Json ToJson(const Candidate& c, const std::vector<Region>& regions) {
   const MeshComparison& m = c.comparison;
   Json json = {{"mesh", c.name},
@@ -100,8 +112,10 @@ std::string ComparisonTable(const std::vector<Candidate>& candidates, const std:
   return out;
 }
 
-std::string ComparisonJson(const std::vector<Candidate>& candidates, const std::vector<Region>& regions) {
-  Json json = {{"reference_diagonal", candidates.front().comparison.reference_diagonal}};
+std::string ComparisonJson(const std::vector<Candidate>& candidates, const std::vector<Region>& regions,
+                           const Eigen::Affine3d& reference_from_mesh) {
+  Json json = {{"reference_diagonal", candidates.front().comparison.reference_diagonal},
+               {"reference_from_mesh", ToJson(reference_from_mesh)}};
   json["candidates"] = Json::array();
   for (const Candidate& c : candidates) json["candidates"].push_back(ToJson(c, regions));
   return json.dump(2) + "\n";

@@ -1,6 +1,7 @@
 // A mesh against the truth, as a whole and by regions: what `glint compare` prints.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ void EnsureNormals(TriangleMesh& mesh);
 // A table for people: every candidate a column, every measure a row, lengths in % of the reference's diagonal.
 std::string ComparisonTable(const std::vector<Candidate>& candidates, const std::vector<Region>& regions);
 
-// The same for programs.
-std::string ComparisonJson(const std::vector<Candidate>& candidates, const std::vector<Region>& regions);
+// The same for programs, with the similarity that the candidates have been brought into the reference's frame by.
+std::string ComparisonJson(const std::vector<Candidate>& candidates, const std::vector<Region>& regions,
+                           const Eigen::Affine3d& reference_from_mesh);
 
 }  // namespace glint

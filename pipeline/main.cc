@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <exception>
 #include <opencv2/core/utility.hpp>
 #include <string>
@@ -13,6 +14,7 @@
 #include "pipeline/ending.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/terminal.h"
+#include "pipeline/usage_error.h"
 
 namespace {
 
@@ -75,7 +77,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? glint::kDone : glint::kBadInput;
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    std::fputs(glint::DescribeUsageError(app, e, {argv + 1, argv + argc}).c_str(), stderr);
+    return glint::kBadInput;
   }
   return RunAction(line);
 }

@@ -112,8 +112,9 @@ std::array<uint8_t, 3> ErrorColor(double error, double largest) {
   return color;
 }
 
-cv::Mat ComparisonSheet(const cv::Mat& photograph, const std::vector<PictureColumn>& columns,
-                        const TriangleMesh& reference, const View& view, double largest_error_deg) {
+cv::Mat ComparisonSheet(const cv::Mat& photograph, const std::string& photograph_title,
+                        const std::vector<PictureColumn>& columns, const TriangleMesh& reference, const View& view,
+                        double largest_error_deg) {
   const int height = static_cast<int>(kPanelWidth * view.camera.height / view.camera.width);
   const int cell = height + kTitleHeight;
   cv::Mat sheet(2 * cell + kScaleHeight, kPanelWidth * (1 + static_cast<int>(columns.size())), CV_8UC3,
@@ -122,7 +123,7 @@ cv::Mat ComparisonSheet(const cv::Mat& photograph, const std::vector<PictureColu
     PutTitle(sheet, column * kPanelWidth, row * cell, title);
     panel.copyTo(sheet(cv::Rect(column * kPanelWidth, row * cell + kTitleHeight, kPanelWidth, height)));
   };
-  place(0, 0, Fitted(photograph, kPanelWidth, height), "photograph, highlights found");
+  place(0, 0, Fitted(photograph, kPanelWidth, height), photograph_title);
   for (size_t c = 0; c < columns.size(); ++c) {
     const int column = static_cast<int>(c) + 1;
     place(column, 0, RenderMesh(*columns[c].mesh, view, kPanelWidth), columns[c].title + ": reflection lines");

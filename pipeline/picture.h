@@ -32,10 +32,11 @@ struct PictureColumn {
   std::vector<float> normal_error_deg;  // per vertex of the reference, negative: none
 };
 
-// The photograph, the meshes, and the normal error of each mesh drawn on the reference's surface with the scale of its
-// colours.
-cv::Mat ComparisonSheet(const cv::Mat& photograph, const std::vector<PictureColumn>& columns,
-                        const TriangleMesh& reference, const View& view, double largest_error_deg);
+// The photograph with its title, the meshes, and the normal error of each mesh drawn on the reference's surface with
+// the scale of its colours.
+cv::Mat ComparisonSheet(const cv::Mat& photograph, const std::string& photograph_title,
+                        const std::vector<PictureColumn>& columns, const TriangleMesh& reference, const View& view,
+                        double largest_error_deg);
 
 // The view that sees most of the vertices with a non-zero mask (all of them if it is empty).
 size_t MostTellingView(const Scene& scene, const TriangleMesh& reference, const std::vector<uint8_t>& mask);

@@ -24,6 +24,7 @@
 #include "pipeline/comparison.h"
 #include "pipeline/error_map.h"
 #include "pipeline/picture.h"
+#include "pipeline/placement.h"
 #include "pipeline/similarity.h"
 #include "pipeline/terminal.h"
 #include "pipeline/workspace.h"
@@ -35,7 +36,8 @@ constexpr double kLargestErrorShownDeg = 20;
 constexpr double kDividedRel = 0.01;  // edges of a mesh that is coloured by its errors, of the reference's diagonal
 
 struct Arguments {
-  std::string mesh, reference, before, project, lights, transform, region, picture, highlights, error_map, error_mesh;
+  std::string mesh, reference, before, project, lights, transform, align, region, picture, highlights, error_map,
+      error_mesh;
   bool json = false;
   double error_range_rel = 0;  // 0: chosen
   CompareOptions options;
@@ -113,7 +115,9 @@ void WritePicture(const Arguments& arguments, const Project& project, const std:
   std::vector<PictureColumn> columns;
   for (const Candidate& c : candidates)
     columns.push_back({&c == &candidates.back() ? "after" : "before", &c.mesh, c.comparison.reference_normal_deg});
-  WriteImagePng(arguments.picture, ComparisonSheet(photograph, columns, reference, view, kLargestErrorShownDeg));
+  WriteImagePng(arguments.picture,
+                ComparisonSheet(photograph, arguments.highlights.empty() ? "photograph" : "photograph, highlights used",
+                                columns, reference, view, kLargestErrorShownDeg));
 }
 
 // The errors of the last candidate as a coloured mesh; those of all as pictures.
@@ -139,19 +143,26 @@ void WriteErrors(const Arguments& arguments, std::vector<Candidate>& candidates,
   if (!arguments.error_mesh.empty()) WriteMesh(arguments.error_mesh, rows.back().colored);
 }
 
+// A surface that distances can be measured on and from.
+TriangleMesh ReadSurface(const std::string& path) {
+  TriangleMesh mesh = WithoutUnusedVertices(ReadMesh(path));
+  if (!(SurfaceArea(mesh) > 0))
+    throw InputError(path, "", "the mesh has no extent: expected a surface, found no triangle with an area");
+  return mesh;
+}
+
 void Compare(Arguments& arguments, Terminal& terminal) {
   CheckOptions(arguments.options);
-  const Eigen::Affine3d reference_from_mesh =
-      arguments.transform.empty() ? Eigen::Affine3d::Identity() : ReadSimilarity(arguments.transform);
-  TriangleMesh reference = ReadMesh(arguments.reference);
+  TriangleMesh reference = ReadSurface(arguments.reference), mesh = ReadSurface(arguments.mesh);
   EnsureNormals(reference);
-  const std::optional<Project> project = ReadProject(arguments, reference_from_mesh);
+  const Placement placed = PlaceOnReference(mesh, reference, arguments.transform, arguments.align, terminal);
+  const std::optional<Project> project = ReadProject(arguments, placed.reference_from_mesh);
   const std::vector<Region> regions = MakeRegions(arguments, reference, project);
   std::vector<Candidate> candidates;
   for (const std::string& path : {arguments.before, arguments.mesh}) {
     if (path.empty()) continue;
-    Candidate candidate{path, ReadMesh(path), {}, {}};
-    Transform(reference_from_mesh, candidate.mesh);
+    Candidate candidate{path, path == arguments.mesh ? mesh : ReadSurface(path), {}, {}};
+    Transform(placed.reference_from_mesh, candidate.mesh);
     EnsureNormals(candidate.mesh);
     candidate.comparison = CompareMeshes(candidate.mesh, reference, arguments.options, {}, terminal);
     candidates.push_back(std::move(candidate));
@@ -160,7 +171,10 @@ void Compare(Arguments& arguments, Terminal& terminal) {
   if (arguments.json || !arguments.error_map.empty() || !arguments.error_mesh.empty())
     WriteErrors(arguments, candidates, reference);
   terminal.Finish();
-  fmt::print("{}", arguments.json ? ComparisonJson(candidates, regions) : ComparisonTable(candidates, regions));
+  if (!placed.doubt.empty()) terminal.Warn(placed.doubt);
+  if (!placed.aligned.empty()) terminal.Info(placed.aligned);
+  fmt::print("{}", arguments.json ? ComparisonJson(candidates, regions, placed.reference_from_mesh)
+                                  : ComparisonTable(candidates, regions));
 }
 
 CLI::Validator HasExtension(const std::string& extension) {
@@ -179,7 +193,8 @@ void AddCompareCommand(CLI::App& app, CommandLine& line) {
       app.add_subcommand("compare", "Accuracy, completeness, Chamfer distance, F-score and normal error");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("MESH", arguments->mesh, "The mesh to measure")->required();
-  command->add_option("REFERENCE", arguments->reference, "The truth, in the same frame")->required();
+  command->add_option("REFERENCE", arguments->reference, "The truth; in another frame: see --align, --transform")
+      ->required();
   command->add_option("--before", arguments->before, "Measure this mesh too, in a column beside it (the seed)");
   auto* project = command->add_option(
       "--project", arguments->project,
@@ -198,6 +213,11 @@ void AddCompareCommand(CLI::App& app, CommandLine& line) {
                       "Also measure where this attribute of the reference's vertices is positive");
   command->add_option("--transform", arguments->transform,
                       "JSON with scale, R, t: x_in_reference = scale R x + t is applied to the meshes first");
+  command
+      ->add_option("--align", arguments->align,
+                   "Then turn and move the meshes (rigid), or scale them too (similarity), so that MESH lies on the "
+                   "reference")
+      ->check(CLI::IsMember({"rigid", "similarity"}));
   command
       ->add_option("--error-map", arguments->error_map,
                    "PNG to draw: the mesh from four sides in the colours of its distance, and their histogram")

@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // A unit cube, 12 faces.
 constexpr const char* kCube = R"(OFF
@@ -50,8 +51,16 @@ TEST_F(Commands, VersionAndHelp) {
 }
 
 TEST_F(Commands, WrongCommandLinesAreBadInput) {
-  EXPECT_EQ(RunGlint({}).exit_code, 2);
-  EXPECT_EQ(RunGlint({"fly"}).exit_code, 2);
+  const ProgramResult none = RunGlint({});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("compare"), HasSubstr("inspect")));
+  const ProgramResult misspelt = RunGlint({"rum", "project"});
+  EXPECT_EQ(misspelt.exit_code, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("rum: unknown command; the nearest is run"));
+  const ProgramResult flag = RunGlint({"run", "project", "-oout", "--form=seed"});
+  EXPECT_EQ(flag.exit_code, 2);
+  EXPECT_THAT(flag.err, AllOf(HasSubstr("--form: unknown flag; the nearest is --from"), Not(HasSubstr("-o"))));
+  EXPECT_THAT(RunGlint({"sdf", "a.ply", "b.ply", "-o", "c.vdb"}).err, HasSubstr("not expected: b.ply"));
   EXPECT_EQ(RunGlint({"run"}).exit_code, 2);
   EXPECT_EQ(RunGlint({"run", "project"}).exit_code, 2);
   EXPECT_EQ(RunGlint({"synth", "sphere", "-o", Path("s"), "--size", "big"}).exit_code, 2);
@@ -137,6 +146,21 @@ TEST_F(Commands, CompareOfAMeshWithItselfIsZero) {
   EXPECT_THAT(RunGlint({"compare", Path("cube.off"), Path("cube.off")}).out, HasSubstr("F-score at 0.5 %"));
 }
 
+TEST_F(Commands, CompareSaysWhatCannotBeCompared) {
+  Write("cube.off", kCube);
+  Write("far.off", "OFF\n3 1 0\n70 0 0\n90 0 0\n70 30 0\n3 0 1 2\n");
+  EXPECT_THAT(RunGlint({"compare", Path("far.off"), Path("cube.off")}).err, HasSubstr("are they in one frame?"));
+  EXPECT_THAT(RunGlint({"compare", Path("cube.off"), Path("cube.off")}).err, Not(HasSubstr("frame")));
+  for (const char* line : {"0 0 0\n1 0 0\n2 0 0\n", "1 1 1\n1 1 1\n1 1 1\n"}) {
+    Write("line.off", std::string("OFF\n3 1 0\n") + line + "3 0 1 2\n");
+    for (const auto& [mesh, reference] : {std::pair("line.off", "cube.off"), std::pair("cube.off", "line.off")}) {
+      const ProgramResult result = RunGlint({"compare", Path(mesh), Path(reference)});
+      EXPECT_EQ(result.exit_code, 2);
+      EXPECT_THAT(result.err, HasSubstr("line.off: the mesh has no extent"));
+    }
+  }
+}
+
 TEST_F(Commands, CompareThroughASimilarity) {
   Write("cube.off", kCube);
   // A quarter turn about z, doubled and shifted: x' = 1 - 2 y, y' = 2 x, z' = 2 z.
@@ -150,6 +174,12 @@ TEST_F(Commands, CompareThroughASimilarity) {
       RunGlint({"compare", Path("cube.off"), Path("moved.off"), "--transform", Path("sim.json"), "--json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_LT(nlohmann::json::parse(result.out)["candidates"][0]["chamfer_rel"], 1e-9);
+  const ProgramResult aligned =
+      RunGlint({"compare", Path("cube.off"), Path("moved.off"), "--align", "similarity", "--json"});
+  EXPECT_EQ(aligned.exit_code, 0) << aligned.err;
+  EXPECT_NEAR(nlohmann::json::parse(aligned.out)["reference_from_mesh"]["scale"], 2, 1e-3);
+  EXPECT_LT(nlohmann::json::parse(aligned.out)["candidates"][0]["chamfer_rel"], 1e-4);
+  EXPECT_EQ(RunGlint({"compare", Path("cube.off"), Path("moved.off"), "--align", "affine"}).exit_code, 2);
   Write("bad.json", R"({"scale": 2, "R": [[0,-1,0],[1,0,0]], "t": [1, 0, 0]})");
   EXPECT_EQ(RunGlint({"compare", Path("cube.off"), Path("moved.off"), "--transform", Path("bad.json")}).exit_code, 2);
   EXPECT_EQ(RunGlint({"compare", Path("cube.off"), Path("cube.off"), "--region", "gloss"}).exit_code, 2);
