@@ -3,7 +3,7 @@
 Lengths are in world units (COLMAP's scale) unless a name says otherwise: `_rel` is a fraction of the bounding box's
 diagonal, `_px` pixels, `_deg` degrees, `_voxels` voxels. Distances are negative inside. Arrays may be anything that
 NumPy makes an array of; they are copied. Long calls free the interpreter. Those of many
-parts (run, find_lights, compare, signed_distance, closest_points) stop on Ctrl-C; those of one (mesh_to_level_set,
+parts (run, find_lights, compare, align, signed_distance, closest_points) stop on Ctrl-C; those of one (mesh_to_level_set,
 level_set_to_mesh, detect_highlights, reading a file) end first. Some take `progress=callable`.
 """
 
@@ -14,11 +14,13 @@ from ._config import config_yaml
 from ._errors import CancelledError, Error, InputError, NoResultError
 from ._glint import LevelSet, __version__
 from ._mesh import (
+    Alignment,
     Comparison,
     ErrorStats,
     FScore,
     Mesh,
     SignedDistance,
+    align,
     closest_points,
     compare,
     dense_to_level_set,
@@ -60,6 +62,7 @@ def set_num_threads(count: int) -> None:
 
 
 __all__ = [
+    "Alignment",
     "Camera",
     "CancelledError",
     "Comparison",
@@ -80,6 +83,7 @@ __all__ = [
     "Rigid3d",
     "RunResult",
     "SignedDistance",
+    "align",
     "closest_points",
     "compare",
     "config_yaml",

@@ -335,3 +335,39 @@ def compare(
         found[name] = ErrorStats(**found[name])
     found["f_scores"] = [FScore(*(float(v) for v in row)) for row in found["f_scores"]]
     return Comparison(**found)
+
+
+@dataclass
+class Alignment:
+    """How a mesh is laid on a reference.
+
+    Attributes:
+        reference_from_mesh: (4, 4) float64; x_in_reference = reference_from_mesh[:3, :3] @ x + reference_from_mesh[:3, 3].
+        scale: of it; 1 if sizes were to stay.
+        mean_rel: mean distance of the surfaces then, both ways, over the nine tenths that are closest; fraction of
+            the reference's diagonal.
+    """
+
+    reference_from_mesh: np.ndarray
+    scale: float
+    mean_rel: float
+
+
+def align(
+    mesh: MeshLike,
+    reference: MeshLike,
+    *,
+    with_scale: bool = True,
+    progress: Optional[Callable[[Event], None]] = None,
+) -> Alignment:
+    """Finds the turn, move and scale that lay a mesh on a reference in any other frame.
+
+    Surfaces of which less than about half is common to both are not found.
+
+    Args:
+        mesh: a Mesh, or a pair (V, F).
+        reference: the same.
+        with_scale: False: sizes stay.
+        progress: called with every Event.
+    """
+    return Alignment(**_glint.align(fields("mesh", mesh), fields("reference", reference), with_scale, teller(progress)))

@@ -6,8 +6,10 @@
 #include "arrays.h"
 #include "background.h"
 #include "bindings.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "io/mesh_io.h"
+#include "metrics/align.h"
 #include "metrics/compare.h"
 #include "sdf/signed_distance.h"
 
@@ -139,6 +141,24 @@ py::dict Compare(const py::dict& mesh_fields, const py::dict& reference_fields, 
   return result;
 }
 
+py::dict Align(const py::dict& mesh_fields, const py::dict& reference_fields, bool with_scale,
+               const py::object& callback) {
+  const TriangleMesh mesh = MeshOf(mesh_fields), reference = MeshOf(reference_fields);
+  for (const auto& [name, surface] : {std::pair("mesh", &mesh), std::pair("reference", &reference)})
+    if (!(SurfaceArea(*surface) > 0))
+      throw InputError(name, name, "expected a surface, found no triangle with an area");
+  const Alignment found = InBackground(callback, [&](Progress& progress) {
+    return AlignMeshes(mesh, reference, with_scale, Eigen::Affine3d::Identity(), progress);
+  });
+  py::dict result;
+  const Eigen::Matrix4d matrix = found.reference_from_mesh.matrix();
+  result["reference_from_mesh"] =
+      ArrayOfRows<4, double>(std::vector<int>{0, 1, 2, 3}, [&](int row) { return Eigen::Vector4d(matrix.row(row)); });
+  result["scale"] = found.scale;
+  result["mean_rel"] = found.mean_rel;
+  return result;
+}
+
 }  // namespace
 
 void BindMesh(py::module_& m) {
@@ -157,6 +177,7 @@ void BindMesh(py::module_& m) {
       py::arg("path"), py::arg("mesh"));
   m.def("signed_distance", &SignedDistance, py::arg("mesh"), py::arg("points"), py::arg("sign"));
   m.def("closest_points", &ClosestPoints, py::arg("mesh"), py::arg("points"), py::arg("sign"));
+  m.def("align", &Align, py::arg("mesh"), py::arg("reference"), py::arg("with_scale"), py::arg("progress"));
   m.def(
       "compare",
       [](const py::dict& mesh, const py::dict& reference, int num_samples, const std::vector<double>& f_thresholds_rel,

@@ -230,7 +230,7 @@ void GateHighlights(const Scene& scene, const ImageSource& images, const Triangl
     if (highlights[i].status == HighlightStatus::kAccepted) judged.push_back(i);
   }
   std::vector<Verdict> verdicts(judged.size());
-  progress.Begin("Highlights against the other views", judged.size());
+  progress.Begin("highlights against the other views", judged.size());
   ParallelFor(judged.size(), 16, [&](size_t k) {
     progress.ThrowIfCancelled();
     verdicts[k] = Judge(scene, brightness, surface, lights, options, highlights[judged[k]]);

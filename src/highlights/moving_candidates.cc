@@ -47,7 +47,7 @@ std::vector<Moving> FindMoving(const Scene& scene, const ViewBrightness& brightn
                                const GateOptions& gate, const std::vector<Highlight>& candidates,
                                const std::vector<Light>& moving_lights, size_t& stay_put, Progress& progress) {
   std::vector<Judged> judged(candidates.size());
-  progress.Begin("Highlights that move", candidates.size());
+  progress.Begin("highlights that move", candidates.size());
   ParallelFor(candidates.size(), 16, [&](size_t i) {
     progress.ThrowIfCancelled();
     progress.Advance();

@@ -11,7 +11,7 @@
 namespace glint {
 
 ViewBrightness::ViewBrightness(const ImageSource& images, size_t memory_bytes, Progress& progress)
-    : maps_(images, LinearMinChannel, memory_bytes, "Brightness of the views", progress),
+    : maps_(images, LinearMinChannel, memory_bytes, "brightness of the views", progress),
       exposures_(images.size(), 1) {}
 
 void ViewBrightness::Equalise(std::vector<double> exposures) {

@@ -12,7 +12,7 @@ constexpr double kCutOff = 0.98;
 }
 
 ViewColors::ViewColors(const ImageSource& images, size_t memory_bytes, Progress& progress)
-    : maps_(std::make_unique<ViewMaps>(images, LinearColors, memory_bytes, "Colours of the views", progress)) {}
+    : maps_(std::make_unique<ViewMaps>(images, LinearColors, memory_bytes, "colours of the views", progress)) {}
 
 ViewColors::~ViewColors() = default;
 

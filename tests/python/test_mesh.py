@@ -160,6 +160,18 @@ def test_compare_spheres():
         glint.compare(3, reference)
 
 
+def test_align_finds_the_frame():
+    v, f = icosphere(3)
+    v = v * [1.0, 1.4, 2.0] + 0.3 * v[:, [1]] ** 2  # no turn takes it to itself
+    turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    found = glint.align((v, f), (7 * v @ turn.T + [10.0, 0.0, -3.0], f))
+    assert found.scale == pytest.approx(7, rel=1e-3) and found.mean_rel < 1e-4
+    moved = v @ found.reference_from_mesh[:3, :3].T + found.reference_from_mesh[:3, 3]
+    np.testing.assert_allclose(moved, 7 * v @ turn.T + [10.0, 0.0, -3.0], atol=0.05)
+    with pytest.raises(glint.InputError, match="reference"):
+        glint.align((v, f), (np.zeros((3, 3)), [[0, 1, 2]]))
+
+
 def test_the_interpreter_runs_on_meanwhile():
     """While C++ works, another Python thread must get its turns."""
     mesh = icosphere(4)
