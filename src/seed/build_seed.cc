@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "geometry/closest_point.h"
+#include "geometry/self_intersections.h"
 #include "highlights/sight_colors.h"
 #include "sdf/csg.h"
 #include "seed/changed_parts.h"
@@ -117,6 +118,12 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   s.num_rim_points = rim.points.size();
   made = std::move(with);
   return found.source == "photographs";  // masks do not change
+}
+
+// Finer, unless that swings through itself where the surface is thin and rough.
+TriangleMesh Subdivided(const Shape& shape) {
+  TriangleMesh fine = SubdivideSmoothly(shape.smooth, kSubdivisions);
+  return shape.folded || SelfIntersections(fine, 1).empty() ? fine : shape.smooth;
 }
 
 // What comes of a finer change to the surface, unless it tears tunnels: then what was found fits together nowhere.
@@ -233,7 +240,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
     return out;
   }
   out.mesh = shape.sparse.mesh;
-  const TriangleMesh faired = SubdivideSmoothly(shape.smooth, kSubdivisions);
+  const TriangleMesh faired = Subdivided(shape);
   out.smooth = s.outlines_used ? WithRim(scene, silhouettes, faired) : faired;
   if (images && options.open_hollows)
     out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, out.outline, *images, s, progress);

@@ -17,11 +17,11 @@
 namespace glint {
 namespace {
 
-constexpr double kChangedRel = 0.003;   // of the diagonal
-constexpr double kMarginRel = 0.012;    // what lies this close to changed parts bends with them
-constexpr double kTouchRel = 0.012;     // an outline's ray this close to the surface touches it
-constexpr double kMinFacing = 0.5;      // cosine of the surface's normal with the outline's, where it does
-constexpr double kBendRel = 0.008;      // over which the surface bends to meet the outlines: about a lip's radius
+constexpr double kChangedRel = 0.003;  // of the diagonal
+constexpr double kMarginRel = 0.012;   // what lies this close to changed parts bends with them
+constexpr double kTouchRel = 0.012;    // an outline's ray this close to the surface touches it
+constexpr double kMinFacing = 0.5;     // cosine of the surface's normal with the outline's, where it does
+constexpr double kBendRel = 0.008;     // over which the surface bends to meet the outlines: about a lip's radius
 constexpr int kPlacesARay = 33;
 constexpr int kRounds = 3;
 constexpr size_t kGrain = 256;
@@ -37,7 +37,8 @@ std::vector<uint8_t> ChangedVertices(const TriangleMesh& before, const TriangleM
     if (changed[f[0]] || changed[f[1]] || changed[f[2]]) parts.faces.push_back(f);
   if (parts.faces.empty()) return changed;
   const ClosestPointQuery parts_query(parts);
-  ParallelFor(n, kGrain, [&](size_t v) { near[v] = parts_query.Find(mesh.vertices[v], kMarginRel * diagonal).has_value(); });
+  ParallelFor(n, kGrain,
+              [&](size_t v) { near[v] = parts_query.Find(mesh.vertices[v], kMarginRel * diagonal).has_value(); });
   return near;
 }
 
@@ -74,8 +75,7 @@ std::vector<Touch> Touches(const Scene& scene, const std::vector<OutlineSample>&
     if (!nearest) return;
     const Eigen::Vector3i& f = mesh.faces[nearest->face];
     if (!changed[f[0]] && !changed[f[1]] && !changed[f[2]]) return;
-    found[i] = {f,
-                Barycentric(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], nearest->point),
+    found[i] = {f, Barycentric(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], nearest->point),
                 nearest->point + least * s.normal};
   });
   std::vector<Touch> touches;

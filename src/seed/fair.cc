@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/check.h"
 #include "core/median.h"
@@ -26,6 +27,8 @@ constexpr double kRestLength = 1;        // spacings over which the natural curv
 constexpr double kMinBelief = 1e-3;      // in a curvature where nothing is known
 constexpr double kFlatness = 0.1;  // belief in a flat surface, where outlines are known: what they leave open is a lid
 constexpr double kStiffStart = 2.5;  // times the smoothing asked for
+constexpr double kMaxGrowth =
+    1.5;  // times the sparse surface's size: more is a bend that runs away where nothing holds
 constexpr double kTrustedRange = 4;  // usual distances: farther attachments lose most of their weight
 
 std::vector<Attachment> Leading(const std::vector<Attachment>& attachments) {
@@ -195,7 +198,7 @@ void FairOptions::Visit(OptionVisitor& v) {
 FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
                              const FairContext& context, const FairOptions& options) {
   GLINT_CHECK(!mesh.empty());
-  const double diagonal = Diagonal(mesh);
+  const double diagonal = Diagonal(mesh), raw_area = SurfaceArea(mesh);
   const ClosestPointQuery raw(mesh);
   FairResult out{RemeshEvenly(mesh, options.edge_rel * diagonal), std::vector<double>(attachments.size(), 1.0)};
   if (attachments.empty()) return out;
@@ -238,7 +241,10 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     if (solver.info() != Eigen::Success) return out;  // singular: what stands so far is closed and sound
     const Eigen::MatrixX3d x = solver.solve(springs.right);
     if (!x.allFinite()) return out;
-    for (int v = 0; v < n; ++v) out.mesh.vertices[v] = x.row(v);
+    TriangleMesh next = out.mesh;
+    for (int v = 0; v < n; ++v) next.vertices[v] = x.row(v);
+    if (Diagonal(next) > kMaxGrowth * diagonal || SurfaceArea(next) > std::pow(kMaxGrowth, 2) * raw_area) return out;
+    out.mesh = std::move(next);
     if (round + 1 < options.rounds) out.mesh = RemeshEvenly(out.mesh, options.edge_rel * diagonal, 1);
   }
   out.trust = Trust(attachments, FeetOf(attachments, out.mesh), min_sigma);

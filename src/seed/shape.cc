@@ -1,6 +1,7 @@
 #include "seed/shape.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "geometry/components.h"
@@ -8,6 +9,7 @@
 #include "geometry/self_intersections.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
+#include "seed/remesh.h"
 #include "seed/stiffness.h"
 
 namespace glint {
@@ -15,7 +17,9 @@ namespace {
 
 constexpr int kRounds = 3;  // of surface, fairing, and leaving out the points that it disbelieves
 constexpr int kMaxStiffenings = 4;
-constexpr double kMendVoxels = 0.7;     // edges of the smooth seed: about as fine as it is
+// Edges of the smooth seed: about as fine as it is, and others where two sheets touch on those voxels.
+constexpr std::array<double, 3> kMendVoxels = {0.7, 0.5, 1.0};
+constexpr double kLeastMended = 0.5;    // of the sparse surface's volume
 constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
 constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
 
@@ -52,14 +56,18 @@ FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachme
     options.smoothing *= 1.6;
   }
   // Its inside, by winding number, has a surface that does not, but two sheets of it may touch.
-  const double voxel = kMendVoxels * options.edge_rel * Diagonal(result.mesh);
-  TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(result.mesh, voxel, {.sign = "winding"})));
-  const MeshChecks checks = CheckMeshSoundness(mended, {.self_intersections = false});
-  if (!(checks.closed && checks.oriented && checks.manifold) || !SelfIntersections(mended, 1).empty()) {
-    folded = true;
+  for (const double edges : kMendVoxels) {
+    const double voxel = edges * options.edge_rel * Diagonal(result.mesh);
+    TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(result.mesh, voxel, {.sign = "winding"})));
+    if (SignedVolume(mended) < kLeastMended * SignedVolume(mesh) || !CheckMeshSoundness(mended).sound()) continue;
+    result.mesh = std::move(mended);
     return result;
   }
-  result.mesh = std::move(mended);
+  // Nothing smooth comes of these points: their facets, which they do not contradict.
+  TriangleMesh facets = RemeshEvenly(mesh, options.edge_rel * Diagonal(mesh));
+  if (!CheckMeshSoundness(facets).sound()) facets = mesh;
+  folded = !CheckMeshSoundness(facets).sound();
+  if (!folded) result.mesh = std::move(facets);
   return result;
 }
 

@@ -167,6 +167,30 @@ SeedOptions Coarse() {
   return options;
 }
 
+// A bowl of which a triangulation makes shreds: what fairs through itself, or runs away, is not taken.
+TEST(BuildSeed, FewPointsOfAThinShellGiveASoundSeed) {
+  constexpr double kInner = 0.94;
+  for (const int count : {60, 100, 160}) {
+    Scene scene = DomeScene(24, 5);
+    for (int i = 0; i < count; ++i) {
+      const double z = -(i + 0.5) / count, turn = 2.4 * i, across = std::sqrt(1 - z * z);
+      const bool inner = i % 2 == 1;
+      const Eigen::Vector3d n(across * std::cos(turn), across * std::sin(turn), z), x = (inner ? kInner : 1.0) * n;
+      AddPoint(scene, x, [&](const Eigen::Vector3d& eye) {
+        if (!inner) return n.dot(eye - x) > 0.15 * (eye - x).norm();
+        const Eigen::Vector3d through = x + (eye - x) * (x.z() / (x.z() - eye.z()));  // where it leaves the bowl
+        return through.head<2>().norm() < kInner;
+      });
+    }
+    AddGround(scene, -1, 4, 20);
+    SeedSummary summary;
+    const SeedResult seed = BuildSeed(scene, Coarse(), &summary);
+    ASSERT_FALSE(seed.smooth.empty()) << count << ": " << summary.BriefReport();
+    EXPECT_TRUE(CheckMeshSoundness(seed.smooth).sound()) << count;
+    EXPECT_LT(Diagonal(seed.smooth), 4) << count;
+  }
+}
+
 TEST(BuildSeed, FollowsScaleAndPlaceOfTheWorld) {
   Scene scene = DomeScene(36, 5);
   AddSphere(scene, 150);
