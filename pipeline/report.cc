@@ -9,6 +9,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// As it is found from any folder.
+std::string Whole(const std::filesystem::path& path) {
+  std::error_code gone;  // the folder, while the run was on
+  const std::filesystem::path whole = std::filesystem::absolute(path, gone).lexically_normal();
+  return gone || path.empty() ? path.string() : whole.string();
+}
+
 Json ToJson(const Light& light) {
   const bool distant = light.type == LightType::kDistant;
   return {{"type", distant ? "distant" : "point"},
@@ -123,9 +130,9 @@ std::string ReportJson(const RunSummary& summary) {
   json["command_folder"] = std::filesystem::current_path(gone).string();
   for (const auto& [name, version] : LibraryVersions()) json["versions"][name] = version;
   if (!summary.colmap_version.empty()) json["versions"]["COLMAP"] = summary.colmap_version;
-  json["project"] = {{"model", summary.model.string()}, {"images", summary.images.string()},
-                     {"views", summary.num_views},      {"missing_images", summary.num_missing_images},
-                     {"points", summary.num_points},    {"points_on_object", summary.num_points_used}};
+  json["project"] = {{"model", Whole(summary.model)}, {"images", Whole(summary.images)},
+                     {"views", summary.num_views},    {"missing_images", summary.num_missing_images},
+                     {"points", summary.num_points},  {"points_on_object", summary.num_points_used}};
   json["seed"] = {{"diagonal_world", summary.diagonal_world}, {"report", summary.seed_report}};
   json["highlights"] = {{"candidates", summary.num_candidates},
                         {"gate", ToJson(summary.gate)},

@@ -60,6 +60,8 @@ class Canvas:
 def save(image, path, colors=0):
     """A small PNG: with a palette where that is enough."""
     if colors:
-        image = image.quantize(colors, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+        # Where there are many, rare ones count, too: those of a scale would be lost among those of the photographs.
+        method, rounds = (Image.Quantize.MAXCOVERAGE, 2) if colors >= 128 else (Image.Quantize.MEDIANCUT, 0)
+        image = image.quantize(colors, method=method, dither=Image.Dither.NONE, kmeans=rounds)
     image.save(path, optimize=True)
     print(f"{path}: {image.width} x {image.height}, {path.stat().st_size // 1024} KB")

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""pictures.py GLINT OUT WORK: draws every picture of the documentation anew. WORK keeps the reconstruction they show."""
-import subprocess
+"""pictures.py GLINT DOCS WORK: draws every picture below DOCS anew that the project can make, and writes the table of
+the gallery. WORK keeps the reconstructions that they show."""
+import shutil
 import sys
 from pathlib import Path
 
@@ -8,17 +9,9 @@ import numpy as np
 from PIL import Image
 
 import diagrams
+import gallery
 import glint
 from drawing import BLUE, Canvas, GREEN, GREY, INK, ORANGE, RED, save
-
-
-def reconstruction(program, work):
-    """A synthetic blob under one lamp, and what Glint makes of its photographs. The lamp is not told."""
-    project, out = work / "project", work / "result"
-    if not (project / "truth").exists():
-        subprocess.run([program, "synth", "blob", "-o", project, "--views", "48", "--size", "480x360", "-q"], check=True)
-    glint.run(project, out, config={"refine": {"voxel_rel": 0.006}}, progress=lambda e: print(e.text) if e.kind == "end" else None)
-    return project, glint.RunResult(out)
 
 
 def photographs(project, result):
@@ -34,16 +27,6 @@ def photographs(project, result):
         for at in px[ids == image_id] * 240 / shown.width:
             canvas.ring(at + [k * 246, 0], 14, (90, 220, 120), 2)
     return canvas.finished()
-
-
-def before_after(program, project, result, work):
-    sheet = work / "comparison.png"
-    subprocess.run(
-        [program, "compare", result.out / "mesh.ply", project / "truth/mesh.ply", "--before", result.out / "seed.ply",
-         "--project", project, "--lights", project / "truth/lights.json", "--picture", sheet, "-q"],
-        check=True, stdout=subprocess.DEVNULL)
-    image = Image.open(sheet).convert("RGB")
-    return image.resize((1100, round(image.height * 1100 / image.width)), Image.LANCZOS)
 
 
 def level_set(project, result):
@@ -120,12 +103,15 @@ def lights(project, result):
 
 
 def confidence(project, result):
-    """The refined surface seen along the first view's axis, in colours from unknown (dark) to measured (bright)."""
+    """The refined surface in colours from unknown (dark) to measured (bright), from the view in which it differs most."""
     mesh = result.mesh
-    names = {image.name: image for image in glint.read_project(project).images.values()}
-    accepted = result.highlights.image_id[result.highlights.accepted]
-    busiest = max(set(accepted), key=list(accepted).count)
-    image = next(i for i in names.values() if i.image_id == busiest)
+    sure = mesh.attributes["confidence"]
+
+    def contrast(image):
+        to_camera = image.projection_center() - mesh.vertices
+        return np.std(sure[np.sum(mesh.normals * to_camera, axis=1) > 0])
+
+    image = max(glint.read_project(project).images.values(), key=contrast)
     x = image.cam_from_world * mesh.vertices
     normals = mesh.normals @ image.cam_from_world.rotation.T
     uv = x[:, :2] / x[:, 2:]
@@ -133,7 +119,7 @@ def confidence(project, result):
     scale = 430 / (high - low).max()
     uv = (uv - (low + high) / 2) * scale + [230, 230]
     dark, bright = np.array([48, 36, 92]), np.array([250, 220, 70])
-    c = mesh.attributes["confidence"][:, None]
+    c = sure[:, None]
     color = (dark + (bright - dark) * c) * (0.45 + 0.55 * np.clip(-normals[:, 2:], 0, 1))
     canvas = Canvas(620, 460)
     order = np.argsort(-x[mesh.faces, 2].mean(axis=1))
@@ -148,16 +134,17 @@ def confidence(project, result):
 
 
 def main():
-    program, out, work = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
-    out.mkdir(parents=True, exist_ok=True)
+    program, docs, work = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve()
+    out = docs / "images"
     work.mkdir(parents=True, exist_ok=True)
     save(diagrams.signed_distance(), out / "signed_distance.png", 64)
     save(diagrams.highlight(), out / "highlight.png", 64)
     save(diagrams.specular_bundle(), out / "specular_bundle.png", 64)
     save(diagrams.shading(), out / "shading.png", 64)
-    project, result = reconstruction(program, work)
+    shutil.copytree(docs.parent / "configs", work / "configs", dirs_exist_ok=True)  # named by the gallery's commands
+    gallery.make(program, docs / "gallery.md", work)
+    project, result = work / "blob", glint.RunResult(work / "blob-out")
     save(photographs(project, result), out / "photographs.png", 256)
-    save(before_after(program, project, result, work), out / "before_after.png", 256)
     save(level_set(project, result), out / "level_set.png", 64)
     save(lights(project, result), out / "lights.png", 32)
     save(confidence(project, result), out / "confidence.png", 256)
