@@ -45,6 +45,11 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
   return attachments;
 }
 
+bool BoundsASolid(const TriangleMesh& mesh) {
+  const MeshChecks checks = CheckMeshSoundness(mesh, {.self_intersections = false});
+  return checks.closed && checks.oriented && checks.manifold && SelfIntersections(mesh, 1).empty();
+}
+
 // Fairs ever more stiffly until the surface does not pass through itself; if it always does, takes it by its inside.
 FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
                             const FairContext& context, FairOptions options, bool& folded) {
@@ -59,14 +64,14 @@ FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachme
   for (const double edges : kMendVoxels) {
     const double voxel = edges * options.edge_rel * Diagonal(result.mesh);
     TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(result.mesh, voxel, {.sign = "winding"})));
-    if (SignedVolume(mended) < kLeastMended * SignedVolume(mesh) || !CheckMeshSoundness(mended).sound()) continue;
+    if (SignedVolume(mended) < kLeastMended * SignedVolume(mesh) || !BoundsASolid(mended)) continue;
     result.mesh = std::move(mended);
     return result;
   }
   // Nothing smooth comes of these points: their facets, which they do not contradict.
   TriangleMesh facets = RemeshEvenly(mesh, options.edge_rel * Diagonal(mesh));
-  if (!CheckMeshSoundness(facets).sound()) facets = mesh;
-  folded = !CheckMeshSoundness(facets).sound();
+  if (!BoundsASolid(facets)) facets = mesh;
+  folded = !BoundsASolid(facets);
   if (!folded) result.mesh = std::move(facets);
   return result;
 }
