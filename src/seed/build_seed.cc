@@ -29,12 +29,12 @@ constexpr double kGoodWithout = 0.75;  // share that fits: what points alone exp
 constexpr double kWorthwhile = 0.85;
 constexpr size_t kColorViews = 48;
 constexpr size_t kColorMemory = size_t{1} << 29;
-constexpr double kVoxelRel = 0.004;     // of the diagonal: as fine as the smooth surface once divided
-constexpr double kRoundingRel = 0.012;  // of the diagonal: of a hollow's edge, about the thinnest wall
-constexpr double kLeastHollow = 1e-3;   // of the volume: less is for the refinement
-constexpr double kLeastTaken = 0.25;    // of the hollows' volume: less, and nothing was opened
-constexpr double kFineRel = 0.003;      // of the diagonal
-constexpr std::array<double, 3> kClosings = {0, 1.5, 3};  // voxels
+constexpr double kVoxelRel = 0.004;                    // of the diagonal: as fine as the smooth surface once divided
+constexpr double kRoundingRel = 0.012;                 // of the diagonal: of a hollow's edge, about the thinnest wall
+constexpr double kLeastHollow = 1e-3;                  // of the volume: less is for the refinement
+constexpr double kLeastTaken = 0.25;                   // of the hollows' volume: less, and nothing was opened
+constexpr double kFineRel = 0.003;                     // of the diagonal
+constexpr std::array<double, 2> kClosings = {1.5, 3};  // voxels
 constexpr double kStayRel = 0.01;  // of the diagonal: what is narrower in a hollow's lining is noise
 constexpr int kSubdivisions = 2;   // of the smooth surface: its facets must not show at the finest voxels
 
@@ -137,12 +137,13 @@ TriangleMesh WithRim(const Scene& scene, const Silhouettes& silhouettes, const T
   const TriangleMesh rim = MissingRim(scene, silhouettes, smooth, voxel);
   if (rim.empty()) return smooth;
   const TriangleMesh joined = Union(smooth, rim, voxel);
-  // A chink between the two may make a tunnel.
-  for (const double closing : kClosings) {
-    TriangleMesh with = LargestPiece(closing > 0 ? Closing(joined, voxel, closing * voxel) : joined);
-    if (GenusOf(with) <= GenusOf(smooth)) return SmoothChangedParts(scene, silhouettes.outline(), smooth, with, 0);
+  // A chink between the two, or in a thin wall, may make a tunnel: as little is closed as leaves the fewest.
+  TriangleMesh with = LargestPiece(joined);
+  for (size_t i = 0; i < kClosings.size() && GenusOf(with) > 0; ++i) {
+    TriangleMesh closed = LargestPiece(Closing(joined, voxel, kClosings[i] * voxel));
+    if (GenusOf(closed) < GenusOf(with)) with = std::move(closed);
   }
-  return smooth;
+  return GenusOf(with) > GenusOf(smooth) ? smooth : SmoothChangedParts(scene, silhouettes.outline(), smooth, with, 0);
 }
 
 // Hollows that it spans, which nothing but their colours shows, are taken out of it.
