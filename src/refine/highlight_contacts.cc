@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/median.h"
+#include "geometry/point_index.h"
 
 namespace glint {
 namespace {
@@ -142,13 +143,13 @@ std::vector<OrientedPoint> HighlightContacts::Oriented() const {
     oriented.push_back(p);
   }
   // A contact explains the surface as far as the next few contacts are.
-  constexpr size_t kNear = 6;
+  constexpr int kNear = 6;
+  std::vector<Eigen::Vector3d> positions;
+  for (const OrientedPoint& p : oriented) positions.push_back(p.position);
+  const PointIndex index(positions);
   for (OrientedPoint& p : oriented) {
-    std::vector<double> distances;
-    for (const OrientedPoint& q : oriented) distances.push_back((q.position - p.position).norm());
-    const size_t k = std::min(kNear, distances.size() - 1);
-    std::nth_element(distances.begin(), distances.begin() + k, distances.end());
-    p.reach = std::clamp(distances[k], 0.02, 0.12);
+    const int last = index.Nearest(p.position, kNear + 1).back();  // the first is the contact itself
+    p.reach = std::clamp((positions[last] - p.position).norm(), 0.02, 0.12);
   }
   if (use_lobes_) AddLobes(oriented);
   return oriented;

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "refine/band_system.h"
+#include "refine/explained.h"
 
 namespace glint {
 
@@ -53,23 +54,8 @@ void LevelSetOptions::Visit(OptionVisitor& v) {
 
 namespace {
 
-// A contact explains what faces as it does, not what lies around a rim: cosines of 20 and 60 degrees.
-constexpr double kSameSide = 0.94, kOtherSide = 0.5;
-
 // Where the voxels do not carry more than the seed, it is held to a quarter of one.
 constexpr double kHeldSigmaVoxels = 0.25, kHeldLengthVoxels = 2;
-
-// m of DESIGN 3.4 at a place with a normal: near 1 where no contact reaches, near 0 where one does.
-float SeedTrust(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, const std::vector<OrientedPoint>& contacts) {
-  double explained = 0;
-  for (const OrientedPoint& contact : contacts) {
-    const double ratio2 = (x - contact.position).squaredNorm() / (contact.reach * contact.reach);
-    if (ratio2 > 9) continue;
-    const double alike = std::clamp((contact.normal.dot(normal) - kOtherSide) / (kSameSide - kOtherSide), 0.0, 1.0);
-    explained = std::max(explained, alike * std::exp(-0.5 * ratio2 * ratio2));
-  }
-  return static_cast<float>(1 - explained);
-}
 
 // Of the seed, averaged over the next voxels (1 2 1 along each axis), so that the facets of its mesh are not taken for
 // bends. Linear functions stay; what quadratic ones shift by does not bend.
@@ -98,6 +84,7 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
   if (input.bend_like_seed) weights.reference.resize(band.size());
   static const std::vector<OrientedPoint> kNone;
   const std::vector<OrientedPoint>& contacts = options.highlight_weight > 0 ? input.contacts : kNone;
+  const Explained explained(contacts);
   const double mu = 1 / std::pow(options.seed_sigma_rel * options.seed_length_rel, 2);
   const double held = 1 / std::pow(kHeldSigmaVoxels * kHeldLengthVoxels * h * h, 2);
   const double background = input.seed.half_width_voxels() * input.seed.voxel_size();
@@ -108,7 +95,8 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
     const Eigen::Vector3d normal = length > 1e-12 ? Eigen::Vector3d(g / length) : Eigen::Vector3d::Zero();
     weights.n[i] = normal.cast<float>();
     const bool hold = input.unresolved && input.unresolved->Near(x);
-    const double pull = hold ? held : mu * SeedTrust(x, normal, contacts);
+    // m of DESIGN 3.4: near 1 where no contact reaches, near 0 where one does.
+    const double pull = hold ? held : mu * static_cast<float>(1 - explained.At(x, normal));
     const double value = input.seed.Value(x);
     const bool known = std::abs(value) < background - 2 * h;
     weights.pull[i] = known ? static_cast<float>(area * pull) : 0;

@@ -64,9 +64,14 @@ Unresolved::Unresolved(const TriangleMesh& surface, const LevelSet& field, const
   ParallelFor(unresolved.size(), 256, [&](size_t v) {
     const Eigen::Vector3d& x = surface.vertices[v];
     if ((fine[near.Nearest(x, 1)[0]] - x).norm() > wall) return;
-    const Eigen::Vector3d normal = field.Gradient(x).normalized();
-    unresolved[v] =
-        !normal.allFinite() || caster.Intersect(x - inside * normal, -normal, 0, wall) || Sharp(field, x, normal);
+    const Eigen::Vector3d gradient = field.Gradient(x);
+    // None halfway between two sides: such a wall has no voxel of its own.
+    if (!(gradient.norm() > 0)) {
+      unresolved[v] = 1;
+      return;
+    }
+    const Eigen::Vector3d normal = gradient.normalized();
+    unresolved[v] = caster.Intersect(x - inside * normal, -normal, 0, wall) || Sharp(field, x, normal);
   });
   for (size_t v = 0; v < unresolved.size(); ++v)
     if (unresolved[v]) positions_.push_back(surface.vertices[v]);

@@ -44,6 +44,15 @@ TEST_F(Plate, IsHeldWhereTheSeedIsFineAndVoxelsAreFew) {
   EXPECT_FALSE(Unresolved(plate_, field_, {}).Near(corner));
 }
 
+TEST_F(Plate, IsHeldWhereTheFieldHasNoDirection) {
+  TriangleMesh sheet;
+  sheet.vertices = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}};
+  sheet.faces = {{0, 1, 2}};
+  const Eigen::Vector3d middle(0, 0, 0);
+  ASSERT_EQ(field_.Gradient(middle).norm(), 0);
+  EXPECT_TRUE(Unresolved(sheet, field_, {middle}).Near(middle));
+}
+
 TEST_F(Plate, ABodyWithRoomForTheVoxelsIsNotHeld) {
   const TriangleMesh ball = testing::BallMesh({0, 0, 0}, 1, 40);
   const LevelSet field = MeshToLevelSet(ball, 0.05);
