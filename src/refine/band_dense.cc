@@ -19,9 +19,11 @@ Eigen::MatrixXf BandOperator::Dense() const {
     unit[i] = 0;
     matrix.col(i) = Eigen::Map<const Eigen::VectorXf>(column.data(), n);
   }
+  const RowGram* const gram = Crowded() ? &Gram() : nullptr;
   ParallelFor(n, 8, [&](size_t i) {
     std::vector<double> of_rows(n, 0);
-    for (size_t e = by_voxel_begin_[i]; e < by_voxel_begin_[i + 1];) {
+    if (gram) gram->ForEntries(i, [&](int32_t j, double value) { of_rows[static_cast<size_t>(j)] = value; });
+    for (size_t e = by_voxel_begin_[i]; !gram && e < by_voxel_begin_[i + 1];) {
       const size_t r = by_voxel_row_[e];
       double product = 0;  // a row may name a voxel twice
       for (; e < by_voxel_begin_[i + 1] && static_cast<size_t>(by_voxel_row_[e]) == r; ++e)

@@ -31,6 +31,11 @@ BandWeights CoarseWeights(const BandWeights& fine, size_t num_fine, const BandTr
   return coarse;
 }
 
+const BandRows& NoRows() {
+  static const BandRows none;
+  return none;
+}
+
 }  // namespace
 
 struct BandMultigrid::Level {
@@ -80,7 +85,8 @@ struct BandMultigrid::Level {
   std::vector<float> scratch;
 };
 
-BandMultigrid::BandMultigrid(const BandOperator& finest) : sample_(finest.rows(), finest.topology().size(), kMaxRows) {
+BandMultigrid::BandMultigrid(const BandOperator& finest)
+    : sample_(finest.Crowded() ? NoRows() : finest.rows(), finest.topology().size(), kMaxRows) {
   levels_.push_back(std::make_unique<Level>());
   levels_[0]->matrix = &finest;
   levels_[0]->Prepare();
@@ -95,6 +101,7 @@ BandMultigrid::BandMultigrid(const BandOperator& finest) : sample_(finest.rows()
     coarse->own = std::make_unique<BandOperator>(
         coarse->transfer->coarse(), coarse->weights,
         thin ? coarse->transfer->Restrict(sample_.Taken(rows)) : coarse->transfer->Restrict(rows));
+    if (finest.Crowded()) coarse->own->SetGram(fine.matrix->Gram().Restricted(*coarse->transfer));
     coarse->matrix = coarse->own.get();
     coarse->Prepare();
     levels_.push_back(std::move(coarse));
@@ -105,10 +112,15 @@ BandMultigrid::BandMultigrid(const BandOperator& finest) : sample_(finest.rows()
 BandMultigrid::~BandMultigrid() = default;
 
 void BandMultigrid::UpdateRowWeights() {
-  const std::vector<double> weights = sample_.Weights(levels_[0]->matrix->rows().weight);
-  for (auto& level : levels_) {
-    if (level->own) level->own->SetRowWeights(weights);
-    level->inverse = level->matrix->InverseAbsoluteRowSums();
+  const BandOperator& finest = *levels_[0]->matrix;
+  const std::vector<double> weights = sample_.Weights(finest.Crowded() ? NoRows().weight : finest.rows().weight);
+  for (size_t l = 0; l < levels_.size(); ++l) {
+    Level& level = *levels_[l];
+    if (level.own && finest.Crowded())
+      level.own->SetGram(levels_[l - 1]->matrix->Gram().Restricted(*level.transfer));
+    else if (level.own)
+      level.own->SetRowWeights(weights);
+    level.inverse = level.matrix->InverseAbsoluteRowSums();
   }
   FactorCoarsest();
 }

@@ -12,9 +12,9 @@ namespace glint {
 // Coarse voxels are 2³ fine ones; between them functions are quadratic B-splines, whose bending energy on the fine
 // band is that of the coarse one (piecewise linear ones have twice as much, and the cycle would not converge for a
 // fourth-order operator). Smoothing is Chebyshev's polynomial in the matrix scaled by its absolute row sums, so that no
-// eigenvalue needs estimating; rows are restricted exactly, but where they crowd a sample of them, the other terms are
-// discretised anew. The cycle is a symmetric positive definite linear map, deterministic. Memory: about 110 bytes a
-// voxel of the finest band.
+// eigenvalue needs estimating; rows are restricted exactly, but where a few places have very many a sample of those
+// (where all do, they are multiplied out), the other terms are discretised anew. The cycle is a symmetric positive
+// definite linear map, deterministic. Memory: about 110 bytes a voxel of the finest band.
 class BandMultigrid {
  public:
   // Keeps a reference to `finest`.

@@ -12,6 +12,7 @@ namespace glint {
 namespace {
 
 constexpr size_t kGrain = 1 << 13;
+constexpr size_t kCrowd = 4;                                 // rows a voxel
 constexpr int kAxisA[3] = {0, 0, 1}, kAxisB[3] = {1, 2, 2};  // of the three mixed differences
 constexpr float kMixed = static_cast<float>(M_SQRT2);        // ‖H‖² counts each mixed derivative twice
 constexpr int32_t kNone = BandTopology::kNone;
@@ -35,6 +36,7 @@ BandOperator::BandOperator(const BandTopology& topology, const BandWeights& weig
       rows_(std::move(rows)),
       interior_(topology.size()),
       present_(topology.size()),
+      crowded_(rows_.size() > kCrowd * topology.size()),
       differences_(topology.size()),
       weighted_(topology.size() + 1),
       row_products_(rows_.size()) {
@@ -192,14 +194,32 @@ double BandOperator::GatherRows(const std::vector<double>& row_values, size_t i)
   return value;
 }
 
+RowGram BandOperator::MultipliedOut() const {
+  return RowGram::Make(topology_.size(), topology_.size(), [&](size_t i, const auto& add) {
+    for (size_t e = by_voxel_begin_[i]; e < by_voxel_begin_[i + 1]; ++e) {
+      const auto r = static_cast<size_t>(by_voxel_row_[e]);
+      const double weighted = rows_.weight[r] * by_voxel_coefficient_[e];
+      for (size_t k = rows_.begin[r]; k < rows_.begin[r + 1]; ++k) add(rows_.voxel[k], weighted * rows_.coefficient[k]);
+    }
+  });
+}
+
+const RowGram& BandOperator::Gram() const {
+  GLINT_CHECK(crowded_);
+  if (!gram_) gram_ = MultipliedOut();
+  return *gram_;
+}
+
 template <class T>
 void BandOperator::Apply(const std::vector<T>& phi, std::vector<T>& out) const {
   TakeDifferences(phi, differences_);
   WeighDifferences(differences_, weighted_);
-  ParallelFor(rows_.size(), 256, [&](size_t r) { row_products_[r] = rows_.weight[r] * rows_.Dot(r, phi); });
+  const RowGram* const gram = Crowded() ? &Gram() : nullptr;
+  if (!gram) ParallelFor(rows_.size(), 256, [&](size_t r) { row_products_[r] = rows_.weight[r] * rows_.Dot(r, phi); });
   out.resize(topology_.size());
   ParallelFor(topology_.size(), kGrain, [&](size_t i) {
-    out[i] = static_cast<T>(GatherDifferences(weighted_, i) + weights_.pull[i] * phi[i] + GatherRows(row_products_, i));
+    const double of_rows = gram ? gram->Product(i, phi) : GatherRows(row_products_, i);
+    out[i] = static_cast<T>(GatherDifferences(weighted_, i) + weights_.pull[i] * phi[i] + of_rows);
   });
 }
 
@@ -228,6 +248,7 @@ double BandOperator::AbsoluteRowSum(size_t i, const std::vector<double>& row_sum
       }
   double value =
       (weights_.smoothness + 12 * weights_.bend_change) * smooth + weights_.normal * along + weights_.pull[i];
+  if (Crowded()) return value + gram_->AbsoluteSum(i);
   for (size_t e = by_voxel_begin_[i]; e < by_voxel_begin_[i + 1]; ++e)
     value += std::abs(by_voxel_coefficient_[e]) * row_sums[by_voxel_row_[e]];
   return value;
@@ -235,7 +256,8 @@ double BandOperator::AbsoluteRowSum(size_t i, const std::vector<double>& row_sum
 
 std::vector<float> BandOperator::InverseAbsoluteRowSums() const {
   std::vector<double> row_sums(rows_.size(), 0);
-  for (size_t r = 0; r < rows_.size(); ++r) {
+  if (Crowded()) Gram();
+  for (size_t r = 0; r < rows_.size() && !Crowded(); ++r) {
     for (size_t e = rows_.begin[r]; e < rows_.begin[r + 1]; ++e) row_sums[r] += std::abs(rows_.coefficient[e]);
     row_sums[r] *= rows_.weight[r];
   }

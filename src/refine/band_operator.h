@@ -5,10 +5,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "refine/band_rows.h"
 #include "refine/band_topology.h"
+#include "refine/row_gram.h"
 
 namespace glint {
 
@@ -24,7 +27,7 @@ struct BandWeights {
 };
 
 // A difference that needs a voxel off the band is left out: natural boundary conditions.
-// Work: about 250 flops a voxel and product; memory 73 bytes a voxel.
+// Work: about 250 flops a voxel and product, and those of the rows, but where they crowd; memory 73 bytes a voxel.
 class BandOperator {
  public:
   // Three second differences, three mixed ones (times √2), the derivative along n, all times powers of h; and a zero,
@@ -39,7 +42,20 @@ class BandOperator {
   const BandRows& rows() const { return rows_; }
   bool Interior(size_t i) const { return interior_[i]; }  // all six neighbours are in the band
 
-  void SetRowWeights(const std::vector<double>& weight) { rows_.weight = weight; }
+  void SetRowWeights(const std::vector<double>& weight) {
+    rows_.weight = weight;
+    if (Crowded()) gram_.reset();
+  }
+
+  // Whether there are so many rows that they are multiplied out once instead of for every product.
+  bool Crowded() const { return crowded_; }
+  // The rows multiplied out; of a crowded band. Not for two threads at once.
+  const RowGram& Gram() const;
+  // In place of rows, of which there are none.
+  void SetGram(RowGram gram) {
+    crowded_ = true;
+    gram_ = std::move(gram);
+  }
 
   // out = matrix · phi, for float and double. Not for two threads at once.
   template <class T>
@@ -72,6 +88,7 @@ class BandOperator {
 
  private:
   Weighted LayOut(const Differences& weighted_bends, float weighted_normal, size_t i) const;
+  RowGram MultipliedOut() const;
   double AbsoluteRowSum(size_t i, const std::vector<double>& row_sums) const;
 
   const BandTopology& topology_;
@@ -83,6 +100,8 @@ class BandOperator {
   std::vector<size_t> by_voxel_begin_;
   std::vector<int32_t> by_voxel_row_;
   std::vector<float> by_voxel_coefficient_;
+  bool crowded_;
+  mutable std::optional<RowGram> gram_;           // made when it is asked for
   mutable std::vector<Differences> differences_;  // scratch of Apply
   mutable std::vector<Weighted> weighted_;
   mutable std::vector<double> row_products_;

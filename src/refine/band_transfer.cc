@@ -11,8 +11,6 @@ namespace glint {
 namespace {
 
 constexpr size_t kGrain = 1 << 13;
-constexpr uint32_t kIndexMask = (1u << 30) - 1;
-constexpr float kWeight[4] = {27.f / 64, 9.f / 64, 3.f / 64, 1.f / 64};  // by the number of quarters
 
 Eigen::Vector3i ParentOf(const Eigen::Vector3i& fine, int bits) {
   Eigen::Vector3i parent;

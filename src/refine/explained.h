@@ -9,9 +9,9 @@
 
 namespace glint {
 
-// Near 1 at a contact, for a surface that faces as it does; falls off over the contact's reach and as normals part, to 0
-// at three reaches and at 60 degrees. The largest of all contacts counts. Queries are thread-safe and take the time of
-// the contacts nearby. Keeps a reference to the contacts.
+// Near 1 at a contact, for a surface that faces as it does; falls off over the contact's reach and as normals part, to
+// 0 at three reaches and at 60 degrees. The largest of all contacts counts. Queries are thread-safe and take the time
+// of the contacts nearby. Keeps a reference to the contacts.
 class Explained {
  public:
   explicit Explained(const std::vector<OrientedPoint>& contacts);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -10,6 +12,7 @@
 #include <random>
 
 #include "refine/band_transfer.h"
+#include "refine/row_gram.h"
 #include "refine/row_sample.h"
 #include "sdf/mesh_to_level_set.h"
 #include "tests/support/shapes.h"
@@ -255,21 +258,23 @@ TEST(BandOperator, DenseIsWhatApplySays) {
   BandWeights weights = Weights(band);
   weights.bend_change = 3;
   weights.pull.assign(band.size(), 0.02f);
-  BandRows rows;
-  for (int32_t i = 0; i < 3 * n; ++i) {
-    rows.Push(i % n, 0.7);
-    rows.Push((7 * i + 2) % n, -0.4);
-    rows.Push(i % 5 == 0 ? i % n : (11 * i) % n, 0.3);  // some name a voxel twice
-    rows.Close(0, 0.1 * (i % 4));
-  }
-  const BandOperator matrix(band, weights, rows);
-  const Eigen::MatrixXf dense = matrix.Dense();
-  std::vector<float> unit(band.size(), 0), column;
-  for (int32_t j = 0; j < n; ++j) {
-    unit[j] = 1;
-    matrix.Apply(unit, column);
-    unit[j] = 0;
-    EXPECT_LE((dense.col(j) - Eigen::Map<Eigen::VectorXf>(column.data(), n)).lpNorm<Eigen::Infinity>(), 1e-6f) << j;
+  for (const int rows_a_voxel : {3, 6}) {  // one by one, and multiplied out
+    BandRows rows;
+    for (int32_t i = 0; i < rows_a_voxel * n; ++i) {
+      rows.Push(i % n, 0.7);
+      rows.Push((7 * i + 2) % n, -0.4);
+      rows.Push(i % 5 == 0 ? i % n : (11 * i) % n, 0.3);  // some name a voxel twice
+      rows.Close(0, 0.1 * (i % 4));
+    }
+    const BandOperator matrix(band, weights, rows);
+    const Eigen::MatrixXf dense = matrix.Dense();
+    std::vector<float> unit(band.size(), 0), column;
+    for (int32_t j = 0; j < n; ++j) {
+      unit[j] = 1;
+      matrix.Apply(unit, column);
+      unit[j] = 0;
+      EXPECT_LE((dense.col(j) - Eigen::Map<Eigen::VectorXf>(column.data(), n)).lpNorm<Eigen::Infinity>(), 2e-6f) << j;
+    }
   }
 }
 
@@ -331,6 +336,55 @@ TEST(RowSample, StandsForAll) {
   const std::vector<double> of_sample = sample.Weights(weight);
   EXPECT_NEAR(std::accumulate(of_sample.begin(), of_sample.end(), 0.0),
               std::accumulate(weight.begin(), weight.end(), 0.0), 1e-6);
+}
+
+// Many rows are multiplied out: the same matrix as that of the rows one by one, on this band and on coarser ones.
+TEST(RowGram, IsTheRowsMultipliedOut) {
+  const Band band(MeshToLevelSet(testing::Icosphere(3), 0.2));
+  const BandWeights weights = Weights(band);
+  const BandRows many = Crowd(band, 20000);
+  const BandOperator crowded(band, weights, many);
+  ASSERT_TRUE(crowded.Crowded());
+  const auto x = Values(band, [](const Eigen::Vector3d& p) { return std::sin(9 * p[0] + p[1]); });
+  const auto product = [&](const BandRows& rows) {
+    std::vector<double> sum(band.size(), 0);
+    for (size_t r = 0; r < rows.size(); ++r)
+      for (size_t e = rows.begin[r]; e < rows.begin[r + 1]; ++e)
+        sum[rows.voxel[e]] += rows.weight[r] * rows.Dot(r, x) * rows.coefficient[e];
+    return sum;
+  };
+  const std::vector<double> expected = product(many);
+  double largest = 0;
+  for (double value : expected) largest = std::max(largest, std::abs(value));
+  for (size_t i = 0; i < band.size(); ++i) ASSERT_NEAR(crowded.Gram().Product(i, x), expected[i], 1e-9 * largest) << i;
+  // Coarser.
+  const BandTransfer transfer(band);
+  const RowGram restricted = crowded.Gram().Restricted(transfer);
+  const BandRows rows = transfer.Restrict(many);
+  std::vector<double> coarse_x(transfer.coarse().size());
+  for (size_t c = 0; c < coarse_x.size(); ++c) coarse_x[c] = std::cos(3.0 * static_cast<double>(c));
+  std::vector<double> coarse(coarse_x.size(), 0);
+  for (size_t r = 0; r < rows.size(); ++r)
+    for (size_t e = rows.begin[r]; e < rows.begin[r + 1]; ++e)
+      coarse[rows.voxel[e]] += rows.weight[r] * rows.Dot(r, coarse_x) * rows.coefficient[e];
+  for (size_t c = 0; c < coarse.size(); ++c)
+    ASSERT_NEAR(restricted.Product(c, coarse_x), coarse[c], 1e-5 * largest) << c;
+}
+
+TEST(RowGram, FollowsTheWeights) {
+  const Band band(MeshToLevelSet(testing::Icosphere(3), 0.2));
+  BandRows many = Crowd(band, 20000);
+  BandSystem changed(band, Weights(band), many);
+  std::vector<double> weight(many.size());
+  for (size_t r = 0; r < weight.size(); ++r) weight[r] = many.target[r] > 0 ? 3 : 0.01;
+  std::vector<double> a(band.phi().begin(), band.phi().end()), b = a, unused = a;
+  changed.Solve(50, 1e-6, unused);  // with the first weights, so that there is something to forget
+  changed.SetRowWeights(weight);
+  changed.Solve(200, 1e-9, a);
+  many.weight = weight;
+  BandSystem made_so(band, Weights(band), many);
+  made_so.Solve(200, 1e-9, b);
+  for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-6) << i;
 }
 
 TEST(BandMultigrid, ConvergesAsWellWhereRowsCrowd) {
