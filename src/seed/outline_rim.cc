@@ -56,10 +56,10 @@ TriangleMesh MissingRim(const Scene& scene, const Silhouettes& silhouettes, cons
   outside.values.resize(static_cast<size_t>(outside.size[0]) * outside.size[1] * outside.size[2]);
   const PointIndex index(missed);
   ParallelFor(outside.values.size(), kGrain, [&](size_t i) {
-    const auto z = static_cast<double>(i % outside.size[2]),
-               y = static_cast<double>(i / outside.size[2] % outside.size[1]),
-               x = static_cast<double>(i / outside.size[2] / outside.size[1]);
-    const Eigen::Vector3d at = world_from_index * Eigen::Vector3d(x, y, z);
+    const size_t z = i % outside.size[2], y = i / outside.size[2] % outside.size[1],
+                 x = i / outside.size[2] / outside.size[1];
+    const Eigen::Vector3d at =
+        world_from_index * Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
     const double beyond = (missed[index.Nearest(at, 1)[0]] - at).norm() - reach;
     outside.values[i] = static_cast<float>(beyond);
     if (beyond > reach) return;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRadians = M_PI / 180;
 constexpr int kHalf = 3;  // seven by seven samples
-constexpr size_t kNumValues = 3 * (2 * kHalf + 1) * (2 * kHalf + 1);
+constexpr size_t kNumSamples = (2 * kHalf + 1) * (2 * kHalf + 1), kNumValues = 3 * kNumSamples;
 constexpr size_t kMaxOthers = 6;
 constexpr size_t kFewestAgreeing = 3;
 // Between the lines of sight: less says little about the depth, more shows two different pictures.
@@ -52,13 +52,13 @@ std::optional<Values> Picture(const View& view, uint32_t index, const SightColor
       mean += *color;
       for (int c = 0; c < 3; ++c) values[k++] = (*color)[c];
     }
-  mean /= static_cast<float>(kNumValues / 3);
+  mean /= static_cast<float>(kNumSamples);
   float squared = 0;
   for (size_t i = 0; i < kNumValues; ++i) {
     values[i] -= mean[static_cast<Eigen::Index>(i % 3)];
     squared += values[i] * values[i];
   }
-  if (contrast) *contrast = std::sqrt(squared / static_cast<float>(kNumValues / 3));
+  if (contrast) *contrast = std::sqrt(squared / static_cast<float>(kNumSamples));
   if (!(squared > 0)) return std::nullopt;
   for (float& v : values) v /= std::sqrt(squared);
   return values;
