@@ -48,7 +48,7 @@ TriangleMesh Union(const TriangleMesh& a, const TriangleMesh& b, double voxel_si
 TriangleMesh Difference(const TriangleMesh& a, const TriangleMesh& b, double voxel_size_world, double rounding_world) {
   const auto k = static_cast<float>(rounding_world / voxel_size_world);
   return Combined(a, b, voxel_size_world, [k](const openvdb::FloatGrid& first, const openvdb::FloatGrid& second) {
-    const openvdb::FloatGrid::Ptr out = openvdb::tools::csgDifferenceCopy(first, second);
+    openvdb::FloatGrid::Ptr out = openvdb::tools::csgDifferenceCopy(first, second);
     if (k > 0) RoundEdges(first, second, k, *out);
     return out;
   });

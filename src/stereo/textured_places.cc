@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRadians = M_PI / 180;
 constexpr int kHalf = 3;  // seven by seven samples
-constexpr size_t kNumSamples = (2 * kHalf + 1) * (2 * kHalf + 1), kNumValues = 3 * kNumSamples;
+constexpr size_t kWide = 2 * kHalf + 1, kNumSamples = kWide * kWide, kNumValues = 3 * kNumSamples;
 constexpr size_t kMaxOthers = 6;
 constexpr size_t kFewestAgreeing = 3;
 // Between the lines of sight: less says little about the depth, more shows two different pictures.
