@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "core/error.h"
 #include "core/parallel.h"
 #include "geometry/closest_point.h"
+#include "geometry/edge_topology.h"
 #include "geometry/mesh_checks.h"
 #include "io/mesh_io.h"
 #include "sdf/extract_mesh.h"
@@ -12,6 +15,8 @@
 
 namespace glint {
 namespace {
+
+constexpr std::array<double, 3> kHalfWidths = {3, 12, 60};
 
 bool AnyViewSees(const TriangleMesh& mesh, const Scene& scene) {
   for (const View& view : scene.views)
@@ -24,8 +29,14 @@ TriangleMesh MadeSound(const std::filesystem::path& path, const TriangleMesh& me
                        std::vector<std::string>& notes) {
   const MeshChecks checks = CheckMeshSoundness(mesh, {.self_intersections = false, .max_places = 0});
   if (checks.closed && checks.oriented && checks.manifold && !checks.inside_out) return mesh;
-  TriangleMesh sound = ExtractMesh(MeshToLevelSet(mesh, options.closing_voxel_rel * Diagonal(mesh)));
-  if (sound.empty())
+  TriangleMesh sound;
+  // What closes an opening lies half as far from the mesh as that is wide: the band must reach there.
+  for (const double half_width_voxels : kHalfWidths) {
+    sound = ExtractMesh(MeshToLevelSet(mesh, options.closing_voxel_rel * Diagonal(WithoutUnusedVertices(mesh)),
+                                       {.half_width_voxels = half_width_voxels}));
+    if (EdgesBalanced(sound)) break;
+  }
+  if (sound.empty() || !EdgesBalanced(sound))
     throw InputError(path.string(), "", "the mesh encloses nothing; expected the surface of a solid object");
   std::string faults;
   for (const MeshFault& fault : checks.faults)

@@ -119,6 +119,7 @@ class Refiner {
   TriangleMesh seed_, surface_;
   LevelSet field_;  // of the surface; empty before the first step
   LevelSet seed_field_;
+  int steps_left_out_ = 0;
   double way_from_seed_ = 0;  // the largest of the surface's vertices so far
   HighlightContacts highlights_;
   std::vector<SurfacePoint> points_;  // sparse ones, then those from texture
@@ -250,7 +251,13 @@ LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& 
 // True distances again, from the smooth zero set: from a mesh its facets would show in the normals.
 void Refiner::TakeSurface(const LevelSet& stepped, const SdfOptions& sdf) {
   const TriangleMesh extracted = ExtractMesh(stepped);
-  surface_ = WithoutCrumbs(extracted);
+  TriangleMesh next = WithoutCrumbs(extracted);
+  // Where it leaves its band there are holes. Then the surface stays as it is.
+  if (next.faces.empty() || !EdgesBalanced(next)) {
+    ++steps_left_out_;
+    return;
+  }
+  surface_ = std::move(next);
   field_ = surface_.faces.size() == extracted.faces.size() ? Redistance(stepped, sdf.half_width_voxels)
                                                            : MeshToLevelSet(surface_, stepped.voxel_size(), sdf);
 }
@@ -332,6 +339,12 @@ void Refiner::Finish(RefineResult& result) {
   if (!summary_.converged)
     summary_.warnings.push_back(
         fmt::format("the contacts still moved after {} iterations at the finest level", options_.max_iterations));
+  if (steps_left_out_ > 0)
+    summary_.warnings.push_back(
+        fmt::format("{} of {} steps would have torn the surface and were not made: its walls have too few voxels, or "
+                    "the highlights "
+                    "are not this surface's",
+                    steps_left_out_, summary_.iterations.size()));
   summary_.tilts = tilts_.summary();
   result.summary = summary_;
 }
