@@ -13,7 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 using Json = nlohmann::json;
 
 class Run : public SharedRun {
@@ -180,7 +182,8 @@ TEST_F(Run, AMissingImageIsCountedAndLeftOut) {
 TEST_F(Run, AMeshInPlaceOfTheSeed) {
   const ProgramResult result = RunGlint(Arguments(Path("given"), {"--mesh", (Out() / "seed.ply").string(), "-q"}));
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(result.err, "");
+  // From facets the contacts may go on moving: the one thing that -q lets through here.
+  EXPECT_THAT(result.err, AnyOf("", MatchesRegex("warning: the contacts still moved[^\n]*\n")));
   EXPECT_LT(SweptNormalError(Path("given") + "/mesh.ply"), SweptNormalError(Out() / "seed.ply"));
 }
 
