@@ -47,7 +47,7 @@ Workspace::Workspace(fs::path root) : root_(std::move(root)) {
     throw InputError(root_.string(), "", "expected a folder for the output, found a file");
   fs::create_directories(root_, error);
   if (error) throw InputError(root_.string(), "", "the output folder cannot be made: " + error.message());
-  RefuseLinksOutOf(root_, {Stages(), Overlays()});
+  RefuseLinksOutOf(root_, {Stages(), Overlays(), HighlightMasks()});
   folder_ = ::open(root_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder_ < 0 || ::access(root_.c_str(), W_OK | X_OK) != 0) {
     const int reason = errno;
@@ -66,6 +66,7 @@ Workspace::Workspace(fs::path root) : root_(std::move(root)) {
   RemoveTemporaries<fs::directory_iterator>(Stages());
   fs::remove_all(StagedFiles(), error);
   RemoveTemporaries<fs::recursive_directory_iterator>(Overlays());
+  RemoveTemporaries<fs::recursive_directory_iterator>(HighlightMasks());
 }
 
 Workspace::~Workspace() { ::close(folder_); }

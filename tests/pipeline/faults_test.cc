@@ -154,7 +154,7 @@ TEST_F(Faults, ALinkWithinTheProjectIsFollowed) {
 }
 
 TEST_F(Faults, NothingIsWrittenThroughLinksOutOfTheOutputFolder) {
-  for (const char* name : {"highlights", "stages"}) {
+  for (const char* name : {"highlights", "highlight_masks", "stages"}) {
     fs::remove_all(folder_ / "out");
     fs::create_directories(folder_ / "out");
     fs::create_directories(folder_ / "elsewhere");

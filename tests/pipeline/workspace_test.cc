@@ -30,11 +30,14 @@ TEST_F(WorkspaceTest, OneRunAtATime) {
 
 TEST_F(WorkspaceTest, TemporariesOfAKilledRunGoAndNothingElse) {
   fs::create_directories(root_ / "highlights/sub");
-  for (const char* name : {".tmp-12-0.ply", "highlights/sub/.tmp-12-3.png", ".tmp-notes.txt", "mine.txt"})
+  fs::create_directories(root_ / "highlight_masks");
+  for (const char* name :
+       {".tmp-12-0.ply", "highlights/sub/.tmp-12-3.png", "highlight_masks/.tmp-12-4.png", ".tmp-notes.txt", "mine.txt"})
     std::ofstream(root_ / name) << "x";
   const Workspace workspace(root_);
   EXPECT_FALSE(fs::exists(root_ / ".tmp-12-0.ply"));
   EXPECT_FALSE(fs::exists(root_ / "highlights/sub/.tmp-12-3.png"));
+  EXPECT_FALSE(fs::exists(root_ / "highlight_masks/.tmp-12-4.png"));
   EXPECT_TRUE(fs::exists(root_ / ".tmp-notes.txt"));
   EXPECT_TRUE(fs::exists(root_ / "mine.txt"));
 }
