@@ -30,10 +30,10 @@ TriangleMesh MadeSound(const std::filesystem::path& path, const TriangleMesh& me
   const MeshChecks checks = CheckMeshSoundness(mesh, {.self_intersections = false, .max_places = 0});
   if (checks.closed && checks.oriented && checks.manifold && !checks.inside_out) return mesh;
   TriangleMesh sound;
+  const double voxel = options.closing_voxel_rel * Diagonal(WithoutUnusedVertices(mesh));
   // What closes an opening lies half as far from the mesh as that is wide: the band must reach there.
   for (const double half_width_voxels : kHalfWidths) {
-    sound = ExtractMesh(MeshToLevelSet(mesh, options.closing_voxel_rel * Diagonal(WithoutUnusedVertices(mesh)),
-                                       {.half_width_voxels = half_width_voxels}));
+    sound = ExtractMesh(MeshToLevelSet(mesh, voxel, {.half_width_voxels = half_width_voxels}));
     if (EdgesBalanced(sound)) break;
   }
   if (sound.empty() || !EdgesBalanced(sound))

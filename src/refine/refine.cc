@@ -342,8 +342,7 @@ void Refiner::Finish(RefineResult& result) {
   if (steps_left_out_ > 0)
     summary_.warnings.push_back(
         fmt::format("{} of {} steps would have torn the surface and were not made: its walls have too few voxels, or "
-                    "the highlights "
-                    "are not this surface's",
+                    "the highlights are not this surface's",
                     steps_left_out_, summary_.iterations.size()));
   summary_.tilts = tilts_.summary();
   result.summary = summary_;
