@@ -43,7 +43,8 @@ class FromPhotographs : public ProgramTest {
 
   ProgramResult RunOn(const std::string& what, const std::vector<std::string>& more = {},
                       const std::string& prefix = "") const {
-    std::vector<std::string> arguments = {"run", Path(what), "-o", Path("out"), "--set", "refine.voxel_rel=0.02"};
+    std::vector<std::string> arguments = {
+        "run", Path(what), "-o", Path("out"), "--set", "refine.voxel_rel=0.02", "--set", "seed.smooth.edge_rel=0.03"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return RunGlint(arguments, "PATH='" + Path("bin") + "':\"$PATH\" " + prefix);
   }

@@ -31,11 +31,14 @@ class SharedRun : public ProgramTest {
   static std::string Lights() { return (shared_ / "p/truth/lights.json").string(); }
   static std::filesystem::path Out() { return shared_ / "out"; }
 
-  // A coarse level set: the flow is what is tested, not the last digit.
+  // A coarse seed and level set: the flow is what is tested, not the last digit.
   static std::vector<std::string> ArgumentsFor(const std::string& project, const std::string& out,
                                                const std::vector<std::string>& more, bool lights = true) {
-    std::vector<std::string> arguments = {
-        "run", project, "-o", out, "--set", fmt::format("refine.voxel_rel={}", kVoxelRel), "--set", "refine.levels=2"};
+    std::vector<std::string> arguments = {"run",   project,
+                                          "-o",    out,
+                                          "--set", fmt::format("refine.voxel_rel={}", kVoxelRel),
+                                          "--set", "refine.levels=2",
+                                          "--set", "seed.smooth.edge_rel=0.03"};
     if (lights) arguments.insert(arguments.end(), {"--lights", Lights()});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;

@@ -12,7 +12,7 @@ import glint
 
 QUICK = {
     "refine": {"voxel_rel": 0.03, "levels": 1, "max_iterations": 2},
-    "seed": {"open_hollows": False, "outlines": {"use": "none"}},
+    "seed": {"open_hollows": False, "outlines": {"use": "none"}, "smooth": {"edge_rel": 0.03}},
     "output.overlays": False,
 }
 
