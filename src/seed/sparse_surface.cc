@@ -1,6 +1,7 @@
 #include "seed/sparse_surface.h"
 
 #include <algorithm>
+#include <array>
 
 #include "seed/cell_surface.h"
 #include "seed/convex_hull.h"
@@ -12,6 +13,12 @@ namespace {
 constexpr int kBaseGrid = 24;         // points across the foot
 constexpr double kFootHeight = 0.12;  // of the object's height: points lower than this show where its foot is
 constexpr size_t kMinFootPoints = 3;
+// The claim of matter on every cell, as a share of the lines of sight of a point: none, as published, unless that
+// leaves many points without a surface. Few points, or those of thin walls, are corners of long cells that reach across
+// the free space beside the matter; the lines through that space then take all of it away.
+constexpr std::array<double, 4> kClaims = {0, 0.25, 1, 4};
+constexpr double kEnoughPoints = 0.95;  // share of the object's points that the solid explains
+constexpr double kManyMore = 0.1;       // of the points: what a larger claim must win
 constexpr size_t kMinContextViews = 3;  // two views agree on many a mismatch, and the context needs no rare points
 
 // Where the object stands: the part of the ground below its lowest points.
@@ -99,11 +106,42 @@ void FillCavities(const Tetrahedra& t, std::vector<uint8_t>& labels) {
     if (spaces.component[c] >= 0 && !open[spaces.component[c]]) labels[c] = 1;
 }
 
+double MeanViews(const Scene& scene, const std::vector<SparseVertex>& vertices) {
+  size_t views = 0, count = 0;
+  for (const SparseVertex& v : vertices) {
+    if (v.scene_point < 0) continue;
+    views += scene.points[v.scene_point].observations.size();
+    ++count;
+  }
+  return static_cast<double>(views) / static_cast<double>(std::max<size_t>(1, count));
+}
+
+// How many of the object's points the solid explains: fully those on its surface, half those within it, which more or
+// better views may yet uncover, not at all those outside.
+double PointsExplained(const SparseCells& cells, const std::vector<uint8_t>& labels) {
+  const Tetrahedra& t = cells.tetrahedra;
+  std::vector<uint8_t> matter(t.points.size(), 0), space(t.points.size(), 0);
+  for (int c = 0; c < static_cast<int>(t.cells.size()); ++c)
+    for (const int v : t.cells[c])
+      if (v >= 0) (labels[c] ? matter : space)[v] = 1;
+  double explained = 0;
+  for (size_t v = 0; v < matter.size(); ++v)
+    if (cells.scene_point[v] >= 0 && matter[v]) explained += space[v] ? 1 : 0.5;
+  return explained;
+}
+
+SparseSurface SurfaceOf(const SparseCells& cells, const std::vector<uint8_t>& labels) {
+  SparseSurface out;
+  std::vector<int> vertex_point;
+  out.mesh = CellSurface(cells.tetrahedra, labels, &vertex_point);
+  for (int p : vertex_point) out.scene_point.push_back(p >= 0 ? cells.scene_point[p] : kMiddleVertex);
+  return out;
+}
+
 }  // namespace
 
 SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reliability, const ObjectChoice& choice,
                                 const CutOptions& options, const RimEvidence& rim) {
-  SparseSurface out;
   std::vector<SparseVertex> vertices;
   std::vector<int> context;
   for (size_t i = 0; i < scene.points.size(); ++i) {
@@ -121,14 +159,23 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
   }
   const SparseCells cells = BuildSparseCells(scene, vertices, context, rim.free_lines, matter);
   const Tetrahedra& t = cells.tetrahedra;
-  if (t.cells.empty()) return out;
-  std::vector<uint8_t> labels = CutCells(t, cells.votes, Permitted(cells, choice), options);
-  KeepLargest(t, labels);
-  FillCavities(t, labels);
-  std::vector<int> vertex_point;
-  out.mesh = CellSurface(t, labels, &vertex_point);
-  for (int p : vertex_point) out.scene_point.push_back(p >= 0 ? cells.scene_point[p] : kMiddleVertex);
-  return out;
+  if (t.cells.empty()) return {};
+  const std::vector<uint8_t> permitted = Permitted(cells, choice);
+  const double views = MeanViews(scene, vertices);
+  const auto num_points = static_cast<double>(std::count(choice.role.begin(), choice.role.end(), PointRole::kObject));
+  std::vector<uint8_t> best;
+  double most = 0;
+  for (const double claim : kClaims) {
+    std::vector<uint8_t> labels = CutCells(t, cells.votes, permitted, options, claim * views);
+    KeepLargest(t, labels);
+    FillCavities(t, labels);
+    const double explained = PointsExplained(cells, labels);
+    if (!best.empty() && explained < most + kManyMore * num_points) continue;
+    best = std::move(labels);
+    most = explained;
+    if (most >= kEnoughPoints * num_points) break;
+  }
+  return SurfaceOf(cells, best);
 }
 
 }  // namespace glint

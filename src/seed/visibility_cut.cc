@@ -47,7 +47,7 @@ void CutOptions::Visit(OptionVisitor& v) {
 }
 
 std::vector<uint8_t> CutCells(const Tetrahedra& tetrahedra, const RayVotes& votes,
-                              const std::vector<uint8_t>& may_be_inside, const CutOptions& options) {
+                              const std::vector<uint8_t>& may_be_inside, const CutOptions& options, double claim) {
   const size_t num_cells = tetrahedra.cells.size();
   GLINT_CHECK_EQ(may_be_inside.size(), num_cells);
   if (num_cells == 0) return {};
@@ -55,11 +55,11 @@ std::vector<uint8_t> CutCells(const Tetrahedra& tetrahedra, const RayVotes& vote
   graph.source_capacity.assign(num_cells, 0);
   graph.sink_capacity.assign(num_cells, 0);
   int64_t everything = 1;  // more than any cut that respects it can cost
-  const int64_t fill = std::llround(options.fill * kVote);
+  const int64_t fill = std::llround(options.fill * kVote), any = std::llround(claim * kVote);
   for (size_t c = 0; c < num_cells; ++c) {
     const bool unseen = votes.crossed[c] == 0 && votes.outside[c] == 0;
     graph.source_capacity[c] = votes.outside[c];
-    graph.sink_capacity[c] = votes.inside[c] + (unseen ? fill : 0);
+    graph.sink_capacity[c] = votes.inside[c] + (unseen ? fill : 0) + any;
     everything += graph.sink_capacity[c];
   }
   for (size_t c = 0; c < num_cells; ++c)

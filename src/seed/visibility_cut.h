@@ -20,9 +20,10 @@ struct CutOptions {
 // Per cell: 1 inside, 0 outside. Infinite cells and those with may_be_inside = 0 are outside. The cost is
 //   Σ lines that must cross the surface before their point + Σ lines without matter behind their point
 //   + quality Σ_facets (1 − min(cos φ, cos ψ))      (φ, ψ: angles between facet and circumspheres, ibid. section 3.3)
-//   + fill · (unseen cells outside), which keeps what nothing contradicts: the visibility-consistent hull.
+//   + fill · (unseen cells outside), which keeps what nothing contradicts: the visibility-consistent hull
+//   + claim · (all cells outside that may be inside), in lines of sight.
 std::vector<uint8_t> CutCells(const Tetrahedra& tetrahedra, const RayVotes& votes,
-                              const std::vector<uint8_t>& may_be_inside, const CutOptions& options);
+                              const std::vector<uint8_t>& may_be_inside, const CutOptions& options, double claim = 0);
 
 // Connected components (across facets) of the cells with label 1: per cell its component, −1 for the others.
 struct CellComponents {

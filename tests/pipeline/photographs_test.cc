@@ -67,6 +67,14 @@ class FromPhotographs : public ProgramTest {
       EXPECT_THAT(ReadText(Path("info")), HasSubstr(" loaded has " + std::to_string(mesh.vertices.size()) + " vn " +
                                                     std::to_string(mesh.faces.size()) + " fn"));
     }
+    if (std::system("command -v CloudCompare > /dev/null 2>&1") == 0) {
+      const std::string command = "QT_QPA_PLATFORM=offscreen timeout 60 CloudCompare -SILENT -O '" +
+                                  Path("out/mesh.ply") + "' > '" + Path("info") + "' 2>&1";
+      EXPECT_EQ(std::system(command.c_str()), 0);
+      EXPECT_THAT(ReadText(Path("info")),
+                  HasSubstr("one mesh with " + std::to_string(mesh.faces.size()) + " faces and " +
+                            std::to_string(mesh.vertices.size()) + " vertices"));
+    }
     ExpectBlenderReadsIt(mesh);
     if (std::system("command -v assimp > /dev/null 2>&1") != 0) return;
     for (const char* name : {"out/mesh.ply", "out/mesh.obj", "out/mesh.glb"}) {
