@@ -171,6 +171,34 @@ void RejectFaint(const std::vector<Highlight>& highlights, const ViewBrightness&
   }
 }
 
+// One lamp has one mirror point on a patch: of accepted ones that lie within each other, the one known best is kept. A
+// detector of blobs finds a lobe again at a coarser scale, where a body of paint that rises towards the lamp, too,
+// makes it look the stronger.
+void RejectRepeated(const std::vector<Highlight>& highlights, const std::vector<size_t>& judged,
+                    std::vector<Verdict>& verdicts) {
+  constexpr double kWithin = 2;  // standard deviations of the smaller blob: its half height
+  std::vector<size_t> accepted;
+  for (size_t k = 0; k < judged.size(); ++k)
+    if (verdicts[k].status == HighlightStatus::kAccepted) accepted.push_back(k);
+  const auto of = [&](size_t k) -> const Highlight& { return highlights[judged[k]]; };
+  std::stable_sort(accepted.begin(), accepted.end(), [&](size_t a, size_t b) {
+    return of(a).view != of(b).view ? of(a).view < of(b).view
+                                    : of(a).covariance_px.trace() < of(b).covariance_px.trace();
+  });
+  for (size_t i = 0; i < accepted.size(); ++i)
+    for (size_t j = i; j-- > 0 && of(accepted[j]).view == of(accepted[i]).view;) {
+      const Highlight &h = of(accepted[i]), &better = of(accepted[j]);
+      if (verdicts[accepted[j]].status != HighlightStatus::kAccepted ||
+          verdicts[accepted[j]].explanation.light != verdicts[accepted[i]].explanation.light)
+        continue;
+      const Eigen::Vector2d d = h.px - better.px;
+      const Eigen::Matrix2d& moments = h.area_px < better.area_px ? h.moments_px : better.moments_px;
+      if (d.dot(moments.inverse() * d) >= kWithin * kWithin) continue;
+      verdicts[accepted[i]].status = HighlightStatus::kRepeated;
+      break;
+    }
+}
+
 // What is seen of a broad lobe peaks beside the point that mirrors the light.
 void MoveToMirrorPoint(const View& view, const SeedSurface& surface, const Light& light, const SurfaceSample& at,
                        Highlight& highlight) {
@@ -238,6 +266,7 @@ void GateHighlights(const Scene& scene, const ImageSource& images, const Triangl
   });
   RejectUnlike(scene, surface, lights, highlights, judged, verdicts);
   RejectFaint(highlights, brightness, judged, lights.size(), options.min_relative_strength, verdicts);
+  RejectRepeated(highlights, judged, verdicts);
   for (size_t k = 0; k < judged.size(); ++k) {
     Highlight& h = highlights[judged[k]];
     h.status = verdicts[k].status;

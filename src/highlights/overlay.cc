@@ -48,6 +48,8 @@ const char* ReasonLetters(HighlightStatus status) {
       return "v";
     case HighlightStatus::kWrongSize:
       return "s";
+    case HighlightStatus::kRepeated:
+      return "r";
   }
   return "?";
 }

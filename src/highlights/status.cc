@@ -30,6 +30,8 @@ std::string_view StatusName(HighlightStatus status) {
       return "too_few_views";
     case HighlightStatus::kWrongSize:
       return "wrong_size";
+    case HighlightStatus::kRepeated:
+      return "repeated";
   }
   return "unknown";
 }
@@ -61,7 +63,9 @@ std::string_view StatusReason(HighlightStatus status) {
     case HighlightStatus::kTooFewViews:
       return "seen in too few other views to tell it from paint";
     case HighlightStatus::kWrongSize:
-      return "too small for the curvature of the surface that its ray meets: it lies elsewhere";
+      return "too small or too large for the curvature of the surface that its ray meets";
+    case HighlightStatus::kRepeated:
+      return "the same highlight, found better at another scale";
   }
   return "unknown";
 }
