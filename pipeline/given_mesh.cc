@@ -28,7 +28,7 @@ bool AnyViewSees(const TriangleMesh& mesh, const Scene& scene) {
 TriangleMesh MadeSound(const std::filesystem::path& path, const TriangleMesh& mesh, const GivenMeshOptions& options,
                        std::vector<std::string>& notes) {
   const MeshChecks checks = CheckMeshSoundness(mesh, {.self_intersections = false, .max_places = 0});
-  if (checks.closed && checks.oriented && checks.manifold && !checks.inside_out) return mesh;
+  if (checks.bounds_a_solid()) return mesh;
   TriangleMesh sound;
   const double voxel = options.closing_voxel_rel * Diagonal(WithoutUnusedVertices(mesh));
   // What closes an opening lies half as far from the mesh as that is wide: the band must reach there.

@@ -34,6 +34,8 @@ struct MeshChecks {
 
   // The pseudo-normal's sign is exact: closed, oriented outward, without self-intersections and degenerate faces.
   bool sound() const { return faults.empty(); }
+  // It has an inside; it may pass through itself.
+  bool bounds_a_solid() const { return closed && oriented && manifold && !inside_out; }
 };
 
 struct MeshCheckOptions {

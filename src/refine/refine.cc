@@ -8,15 +8,14 @@
 #include <numeric>
 #include <utility>
 
-#include "constraints/point_covariance.h"
 #include "core/check.h"
 #include "geometry/components.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
 #include "refine/confidence.h"
 #include "refine/highlight_contacts.h"
+#include "refine/known_places.h"
 #include "refine/normalized.h"
-#include "refine/outline_contacts.h"
 #include "refine/thickness.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
@@ -65,7 +64,7 @@ class Refiner {
         highlights_(MakeHighlights()),
         tilts_(input.scene, input.lights.empty() ? nullptr : input.images, input.normals, options.tilts, frame_,
                progress),
-        photo_(input.scene, input.images, options.photo, frame_, progress) {
+        known_(input, options, frame_, progress) {
     seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
     seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
     surface_ = seed_;
@@ -73,14 +72,12 @@ class Refiner {
       for (size_t v = 0; name == kFineScalar && v < values.size(); ++v)
         if (values[v] > 0) fine_.push_back(seed_.vertices[v]);
     summary_.bends_like_seed = options.bend != "flat";
-    MakePoints();
-    MakeOutline();
   }
 
   RefineResult Run() {
     RefineResult result;
     summary_.num_highlights = static_cast<int>(input_.highlights.size());
-    summary_.num_points = static_cast<int>(points_.size());
+    summary_.num_points = static_cast<int>(known_.num_sparse());
     size_t steps = 0;
     const int first_level = FirstLevel();
     for (int level = first_level; level < options_.levels; ++level) steps += StepsOfIteration(level) * MaxIterations();
@@ -96,8 +93,6 @@ class Refiner {
 
  private:
   HighlightContacts MakeHighlights() const;
-  void MakePoints();
-  void MakeOutline();
   // Four times the surface takes four times as long: the steps of progress are weighed so.
   static size_t StepsOfIteration(int level) { return size_t{1} << (2 * level); }
   int FirstLevel();
@@ -106,9 +101,6 @@ class Refiner {
   LevelSet SeedField(double voxel, double half_width_voxels);
   LevelSet Step(const LevelSet& seed_field, bool undecided, StepSummary& summary);
   void TakeSurface(const LevelSet& stepped, const SdfOptions& sdf);
-  void TakePhotoPoints();
-  void UpdatePoints(const LevelSet& field);
-  std::vector<SurfacePoint> KnownPlaces(const LevelSet& field) const;
   void MeasureConfidence();
   void Finish(RefineResult& result);
 
@@ -122,13 +114,9 @@ class Refiner {
   int steps_left_out_ = 0;
   double way_from_seed_ = 0;  // the largest of the surface's vertices so far
   HighlightContacts highlights_;
-  std::vector<SurfacePoint> points_;  // sparse ones, then those from texture
-  std::vector<Eigen::Matrix3d> point_covariance_;
-  std::vector<OutlineRay> outline_;
-  std::vector<SurfacePoint> rim_;
   std::vector<Eigen::Vector3d> fine_;  // of the seed, finer than it is elsewhere
   PhotoTilts tilts_;
-  PhotoPoints photo_;
+  KnownPlaces known_;
   RefineSummary summary_;
 };
 
@@ -162,65 +150,6 @@ HighlightContacts Refiner::MakeHighlights() const {
   return {std::move(contacts), std::move(lights), std::move(solve), options_.use_lobes};
 }
 
-void Refiner::MakePoints() {
-  const Scene& scene = input_.scene;
-  if (input_.point_used.empty()) return;
-  GLINT_CHECK_EQ(input_.point_used.size(), scene.points.size());
-  const std::vector<Eigen::Matrix3d> covariances = PointCovariances(scene, input_.point_used);
-  for (size_t i = 0; i < scene.points.size(); ++i) {
-    if (!input_.point_used[i]) continue;
-    SurfacePoint p;
-    p.position = frame_.FromWorld(scene.points[i].position);
-    points_.push_back(p);
-    point_covariance_.push_back(frame_.scale * frame_.scale * covariances[i]);
-  }
-}
-
-void Refiner::MakeOutline() {
-  rim_ = KnownOutlinePlaces(input_.scene, input_.outline, frame_);
-  if (!options_.use_outlines) return;
-  for (const OutlineSample& sample : input_.outline)
-    outline_.push_back({frame_.FromWorld(input_.scene.views[sample.view].Center()), sample.ray, sample.normal,
-                        frame_.scale * sample.near, frame_.scale * sample.far, frame_.scale * sample.sigma});
-}
-
-void Refiner::TakePhotoPoints() {
-  points_.resize(summary_.num_points);
-  point_covariance_.resize(summary_.num_points);
-  const std::vector<PhotoPoint> seen = photo_.Look(surface_, highlights_.lights());
-  for (const PhotoPoint& p : seen) {
-    points_.emplace_back().position = p.position;
-    point_covariance_.push_back(p.sigma * p.sigma * Eigen::Matrix3d::Identity());
-  }
-  summary_.num_photo_points = static_cast<int>(seen.size());
-}
-
-void Refiner::UpdatePoints(const LevelSet& field) {
-  for (size_t i = 0; i < points_.size(); ++i) {
-    SurfacePoint& p = points_[i];
-    const Eigen::Vector3d g = field.Gradient(p.position);
-    // Off the band there is no normal; a zero one ties the point to no contact.
-    p.normal = g.norm() > 0.5 ? Eigen::Vector3d(g.normalized()) : Eigen::Vector3d::Zero();
-    p.surface_position = p.position - field.Value(p.position) * p.normal;
-    // Across the surface; off the band, where that is unknown, an average direction's.
-    const Eigen::Matrix3d& c = point_covariance_[i];
-    const double variance = p.normal.isZero() ? c.trace() / 3 : p.normal.dot(c * p.normal);
-    p.sigma = std::max(options_.min_point_sigma_rel, std::sqrt(variance));
-  }
-}
-
-// What anchors the bundle: the sparse points, and where the outlines show the surface.
-std::vector<SurfacePoint> Refiner::KnownPlaces(const LevelSet& field) const {
-  std::vector<SurfacePoint> places = points_;
-  for (SurfacePoint p : rim_) {
-    const Eigen::Vector3d g = field.Gradient(p.position);
-    if (g.norm() < 0.5) continue;  // off the band: the surface is elsewhere
-    p.surface_position = p.position - field.Value(p.position) * g.normalized();
-    places.push_back(p);
-  }
-  return places;
-}
-
 // A faired seed bends much as the object does, a raw mesh is rough: the first step of each level
 // tells which it is, at the roughness that its voxels resolve.
 LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& summary) {
@@ -229,14 +158,15 @@ LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& 
   std::erase_if(contacts, [&](const OrientedPoint& p) { return unresolved.Near(p.position); });
   std::vector<Tilt> tilts = tilts_.tilts();
   std::erase_if(tilts, [&](const Tilt& t) { return unresolved.Near(t.position); });
-  const std::vector<OrientedPoint> outline = OutlineContacts(outline_, field_);
+  const std::vector<OrientedPoint> outline = known_.Outline(field_);
   const double area = SurfaceArea(surface_);
   if (options_.method == "flow")
-    return FlowStep({field_, seed_field, false, area, contacts, points_, outline, tilts, &unresolved}, options_.flow,
-                    &summary);
+    return FlowStep({field_, seed_field, false, area, contacts, known_.points(), outline, tilts, &unresolved},
+                    options_.flow, &summary);
   const auto step = [&](bool bend_like_seed, StepSummary& report) {
-    return VariationalStep({field_, seed_field, bend_like_seed, area, contacts, points_, outline, tilts, &unresolved},
-                           options_.level_set, &report);
+    return VariationalStep(
+        {field_, seed_field, bend_like_seed, area, contacts, known_.points(), outline, tilts, &unresolved},
+        options_.level_set, &report);
   };
   LevelSet stepped = step(summary_.bends_like_seed, summary);
   if (!undecided || !summary_.bends_like_seed || options_.bend != "auto") return stepped;
@@ -268,17 +198,18 @@ bool Refiner::RunLevel(double voxel, size_t progress_steps) {
   sdf.half_width_voxels = options_.half_width_voxels + (voxel > 1.5 * options_.voxel_rel ? 2 : 0);
   const LevelSet seed_field = SeedField(voxel, sdf.half_width_voxels);
   if (!field_.empty()) field_ = Resample(field_, voxel, sdf.half_width_voxels);
-  TakePhotoPoints();
+  known_.LookForTexture(surface_, highlights_.lights());
+  summary_.num_photo_points = static_cast<int>(known_.points().size() - known_.num_sparse());
   for (int k = 0; k < options_.max_iterations; ++k) {
     progress_.ThrowIfCancelled();
     const auto start = std::chrono::steady_clock::now();
     IterationSummary iteration;
     iteration.voxel_rel = voxel;
     if (field_.empty()) field_ = MeshToLevelSet(surface_, voxel, sdf);
-    UpdatePoints(field_);
+    known_.Update(field_);
     iteration.contact_motion_voxels = highlights_.Follow(surface_, field_, !summary_.iterations.empty(),
                                                          options_.contacts.max_incidence_deg * kRadians,
-                                                         KnownPlaces(field_), options_.bundle, iteration.bundle) /
+                                                         known_.Anchors(field_), options_.bundle, iteration.bundle) /
                                       voxel;
     iteration.contacts_on_surface = highlights_.num_on_surface();
     tilts_.LookAgain(surface_, highlights_.lights(), !summary_.iterations.empty());
@@ -310,9 +241,10 @@ void Refiner::MeasureConfidence() {
   const double voxel = std::max(options_.voxel_rel, kConfidenceVoxelRel);
   const LevelSet seed_field = SeedField(voxel, options_.half_width_voxels + 1);
   const LevelSet field = Resample(field_, voxel, options_.half_width_voxels + 1);
-  const std::vector<OrientedPoint> contacts = highlights_.Oriented(), outline = OutlineContacts(outline_, field);
-  const StepInput input{field,   seed_field,    summary_.bends_like_seed, SurfaceArea(surface_), contacts, points_,
-                        outline, tilts_.tilts()};
+  const std::vector<OrientedPoint> contacts = highlights_.Oriented(), outline = known_.Outline(field);
+  const StepInput input{
+      field,   seed_field,    summary_.bends_like_seed, SurfaceArea(surface_), contacts, known_.points(),
+      outline, tilts_.tilts()};
   AddConfidence(PosteriorDeviation(input, options_.level_set, surface_.vertices), surface_);
 }
 

@@ -46,8 +46,8 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
 }
 
 bool BoundsASolid(const TriangleMesh& mesh) {
-  const MeshChecks checks = CheckMeshSoundness(mesh, {.self_intersections = false});
-  return checks.closed && checks.oriented && checks.manifold && SelfIntersections(mesh, 1).empty();
+  return CheckMeshSoundness(mesh, {.self_intersections = false, .max_places = 0}).bounds_a_solid() &&
+         SelfIntersections(mesh, 1).empty();
 }
 
 // Fairs ever more stiffly until the surface does not pass through itself; if it always does, takes it by its inside.
