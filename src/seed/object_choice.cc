@@ -17,7 +17,9 @@ namespace {
 constexpr double kReachRel = 1.5;          // of the focus distance: what is farther from the focus is not looked at
 constexpr double kNearRel = 0.25;          // of the focus distance: how near the focus the object is expected
 constexpr double kAboveGroundRel = 0.015;  // of the focus distance: matter lower than this joins neighbours on a table
-constexpr double kMaxGap = 4;              // spacings from a point to the piece that it is counted to
+constexpr double kFloorAtBorders = 0.1;    // see ShareAtBorders()
+constexpr int64_t kFewPoints = 15;  // on a plane that has more, they are rather the object's edge than the object
+constexpr double kMaxGap = 4;       // spacings from a point to the piece that it is counted to
 
 bool OnGround(const std::optional<GroundPlane>& ground, const Eigen::Vector3d& x) {
   return ground && ground->plane.signedDistance(x) < ground->tolerance;
@@ -166,6 +168,27 @@ void FindByFocus(const Scene& scene, const PointReliability& reliability, const 
   LeaveOutWhatLiesApart(scene, choice);
 }
 
+// A floor goes on to the border of the photographs, an object is taken whole: how much of what is seen of the plane
+// lies in a tenth of the width or height from the border (a floor fills a third of a photograph there).
+double ShareAtBorders(const Scene& scene, const std::vector<PointRole>& role) {
+  constexpr double kMargin = 0.1;
+  size_t seen = 0, at_border = 0;
+  for (size_t i = 0; i < role.size(); ++i) {
+    if (role[i] != PointRole::kGround) continue;
+    for (const Observation& o : scene.points[i].observations) {
+      const Camera& camera = scene.views[o.view].camera;
+      const double x = o.px.x() / static_cast<double>(camera.width), y = o.px.y() / static_cast<double>(camera.height);
+      ++seen;
+      at_border += std::min({x, 1 - x, y, 1 - y}) < kMargin;
+    }
+  }
+  return seen > 0 ? static_cast<double>(at_border) / static_cast<double>(seen) : 1;
+}
+
+int64_t CountObject(const ObjectChoice& choice) {
+  return std::count(choice.role.begin(), choice.role.end(), PointRole::kObject);
+}
+
 }  // namespace
 
 void ObjectOptions::Visit(OptionVisitor& v) {
@@ -205,9 +228,17 @@ ObjectChoice ChooseObject(const Scene& scene, const PointReliability& reliabilit
     for (size_t i = 0; i < balance.size(); ++i)
       if (use[i]) choice.role[i] = balance[i] > 0 ? PointRole::kObject : PointRole::kContext;
     choice.chosen_by = "masks";
-    if (std::count(choice.role.begin(), choice.role.end(), PointRole::kObject) >= 4) return choice;
+    if (CountObject(choice) >= 4) return choice;
   }
+  const ObjectChoice nothing_chosen = choice;
   FindByFocus(scene, reliability, use, cut, choice);
+  if (choice.ground && CountObject(choice) < kFewPoints && ShareAtBorders(scene, choice.role) < kFloorAtBorders) {
+    // The plane may be the object itself: a car's hood with hardly a point around it.
+    ObjectChoice without = nothing_chosen;
+    without.ground.reset();
+    FindByFocus(scene, reliability, use, cut, without);
+    if (CountObject(without) >= kFewPoints) choice = std::move(without);
+  }
   choice.chosen_by = choice.ground ? "ground and focus" : "focus";
   return choice;
 }

@@ -191,6 +191,23 @@ TEST(BuildSeed, FewPointsOfAThinShellGiveASoundSeed) {
   }
 }
 
+// A car's hood on a floor without texture: the plane that most points lie on is the object.
+TEST(BuildSeed, AFlatObjectIsNotTheGround) {
+  Scene scene = DomeScene(24, 5);
+  const auto seen = [](const Eigen::Vector3d& eye) { return eye.z() > 0.5; };
+  for (int i = 0; i < 90; ++i) {
+    const double r = std::sqrt((i + 0.5) / 90), turn = 2.4 * i;
+    AddPoint(scene, {r * std::cos(turn), r * std::sin(turn), 0.04 * (1 - r * r)}, seen);
+  }
+  for (int i = 0; i < 3; ++i)  // its rim goes down to the floor
+    AddPoint(scene, {1.02 * std::cos(i), 1.02 * std::sin(i), -0.2 * (i + 1)}, seen);
+  for (int i = 0; i < 4; ++i) AddPoint(scene, {2.2 * std::cos(i), 2.2 * std::sin(i), -0.5}, seen);
+  SeedSummary summary;
+  const SeedResult seed = BuildSeed(scene, Coarse(), &summary);
+  EXPECT_GE(summary.num_object_points, 80u) << summary.BriefReport();
+  ASSERT_FALSE(seed.smooth.empty()) << summary.BriefReport();
+}
+
 TEST(BuildSeed, FollowsScaleAndPlaceOfTheWorld) {
   Scene scene = DomeScene(36, 5);
   AddSphere(scene, 150);
