@@ -176,7 +176,8 @@ void RejectFaint(const std::vector<Highlight>& highlights, const ViewBrightness&
 // makes it look the stronger.
 void RejectRepeated(const std::vector<Highlight>& highlights, const std::vector<size_t>& judged,
                     std::vector<Verdict>& verdicts) {
-  constexpr double kWithin = 2;  // standard deviations of the smaller blob: its half height
+  // Standard deviations of the smaller blob (its half height), and of the larger one.
+  constexpr double kWithinSmaller = 2, kWithinLarger = 1;
   std::vector<size_t> accepted;
   for (size_t k = 0; k < judged.size(); ++k)
     if (verdicts[k].status == HighlightStatus::kAccepted) accepted.push_back(k);
@@ -192,8 +193,11 @@ void RejectRepeated(const std::vector<Highlight>& highlights, const std::vector<
           verdicts[accepted[j]].explanation.light != verdicts[accepted[i]].explanation.light)
         continue;
       const Eigen::Vector2d d = h.px - better.px;
-      const Eigen::Matrix2d& moments = h.area_px < better.area_px ? h.moments_px : better.moments_px;
-      if (d.dot(moments.inverse() * d) >= kWithin * kWithin) continue;
+      const auto& [smaller, larger] =
+          std::minmax(h, better, [](const Highlight& a, const Highlight& b) { return a.area_px < b.area_px; });
+      if (d.dot(smaller.moments_px.inverse() * d) >= kWithinSmaller * kWithinSmaller &&
+          d.dot(larger.moments_px.inverse() * d) >= kWithinLarger * kWithinLarger)
+        continue;
       verdicts[accepted[i]].status = HighlightStatus::kRepeated;
       break;
     }
