@@ -14,7 +14,6 @@ constexpr double kLeastReachDeg = 10;
 constexpr double kMedianOfRayleigh = 1.18;  // in standard deviations
 constexpr double kClearlyOff = 5.5;         // in standard deviations: the errors of a rough seed have heavy tails
 constexpr double kNarrow = 0.4;             // of the median width
-constexpr double kWide = 2.5;               // of the median width: white paint where it faces the lamp
 constexpr double kTellingWidthDeg = 3;      // of sharper gloss the seed's facets decide how wide it looks
 constexpr int kRounds = 30;
 
@@ -85,13 +84,11 @@ std::vector<Unlike> FindUnlike(const std::vector<SeenOnSeed>& seen, int num_ligh
       else if (seen[i].width_deg)
         widths_deg.push_back(*seen[i].width_deg);
     }
-    if (widths_deg.size() < kFewest) continue;
     const double width_deg = Median(widths_deg);
-    const double narrowest_deg = width_deg < kTellingWidthDeg ? 0 : kNarrow * width_deg;
-    const double widest_deg = kWide * std::max(width_deg, kTellingWidthDeg);
+    if (widths_deg.size() < kFewest || width_deg < kTellingWidthDeg) continue;
     for (size_t i = 0; i < seen.size(); ++i)
       if (seen[i].light == light && unlike[i] == Unlike::kNo && seen[i].width_deg &&
-          (*seen[i].width_deg < narrowest_deg || *seen[i].width_deg > widest_deg))
+          *seen[i].width_deg < kNarrow * width_deg)
         unlike[i] = Unlike::kWidth;
   }
   return unlike;

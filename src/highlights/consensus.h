@@ -18,7 +18,7 @@ enum class Unlike { kNo, kNormal, kWidth };
 // Which of the things that passed for highlights are unlike the others. Where the seed is good, marks of
 // paint near the mirror point are as far off as chance has it: the angles are a mixture of the seed's errors (normal
 // in two dimensions) and of directions that are spread evenly. And one gloss makes lobes of one width, which what is
-// much narrower (a scratch) or wider (matte paint that faces the lamp) does not share. Of few all are kept.
+// much narrower does not share (what is much wider may be the lobe, where many marks are narrow). Of few all are kept.
 std::vector<Unlike> FindUnlike(const std::vector<SeenOnSeed>& seen, int num_lights);
 
 }  // namespace glint

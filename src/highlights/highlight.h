@@ -22,7 +22,7 @@ enum class HighlightStatus {
   kInconsistent,  // contradicts the neighbouring contacts in the bundle
   kNotALobe,      // flat or ragged like print, without the fall-off of a highlight
   kTooFewViews,   // no other views could tell it from paint
-  kWrongSize,     // smaller or larger than the surface's curvature at its ray would make it
+  kWrongSize,     // smaller than the surface's curvature at its ray would make it
   kRepeated,      // another scale has found the same highlight better
 };
 inline constexpr int kNumHighlightStatuses = 14;

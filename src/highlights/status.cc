@@ -63,7 +63,7 @@ std::string_view StatusReason(HighlightStatus status) {
     case HighlightStatus::kTooFewViews:
       return "seen in too few other views to tell it from paint";
     case HighlightStatus::kWrongSize:
-      return "too small or too large for the curvature of the surface that its ray meets";
+      return "too small for the curvature of the surface that its ray meets: it lies elsewhere";
     case HighlightStatus::kRepeated:
       return "the same highlight, found better at another scale";
   }
