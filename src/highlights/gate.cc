@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "core/check.h"
 #include "core/median.h"
@@ -171,36 +173,37 @@ void RejectFaint(const std::vector<Highlight>& highlights, const ViewBrightness&
   }
 }
 
+// Whether two finds are one blob at two scales: one's peak lies within the other.
+bool LieWithin(const Highlight& a, const Highlight& b) {
+  // Standard deviations of the smaller blob (its half height), and of the larger one.
+  constexpr double kSmaller = 2, kLarger = 1;
+  const bool first = a.area_px < b.area_px;
+  const Eigen::Vector2d d = a.px - b.px;
+  const auto within = [&](const Eigen::Matrix2d& moments, double limit) {
+    return d.dot(moments.inverse() * d) < limit * limit;
+  };
+  return within(first ? a.moments_px : b.moments_px, kSmaller) || within(first ? b.moments_px : a.moments_px, kLarger);
+}
+
 // One lamp has one mirror point on a patch: of accepted ones that lie within each other, the one known best is kept. A
 // detector of blobs finds a lobe again at a coarser scale, where a body of paint that rises towards the lamp, too,
 // makes it look the stronger.
 void RejectRepeated(const std::vector<Highlight>& highlights, const std::vector<size_t>& judged,
                     std::vector<Verdict>& verdicts) {
-  // Standard deviations of the smaller blob (its half height), and of the larger one.
-  constexpr double kWithinSmaller = 2, kWithinLarger = 1;
-  std::vector<size_t> accepted;
-  for (size_t k = 0; k < judged.size(); ++k)
-    if (verdicts[k].status == HighlightStatus::kAccepted) accepted.push_back(k);
   const auto of = [&](size_t k) -> const Highlight& { return highlights[judged[k]]; };
-  std::stable_sort(accepted.begin(), accepted.end(), [&](size_t a, size_t b) {
-    return of(a).view != of(b).view ? of(a).view < of(b).view
-                                    : of(a).covariance_px.trace() < of(b).covariance_px.trace();
-  });
-  for (size_t i = 0; i < accepted.size(); ++i)
-    for (size_t j = i; j-- > 0 && of(accepted[j]).view == of(accepted[i]).view;) {
-      const Highlight &h = of(accepted[i]), &better = of(accepted[j]);
-      if (verdicts[accepted[j]].status != HighlightStatus::kAccepted ||
-          verdicts[accepted[j]].explanation.light != verdicts[accepted[i]].explanation.light)
-        continue;
-      const Eigen::Vector2d d = h.px - better.px;
-      const auto& [smaller, larger] =
-          std::minmax(h, better, [](const Highlight& a, const Highlight& b) { return a.area_px < b.area_px; });
-      if (d.dot(smaller.moments_px.inverse() * d) >= kWithinSmaller * kWithinSmaller &&
-          d.dot(larger.moments_px.inverse() * d) >= kWithinLarger * kWithinLarger)
-        continue;
-      verdicts[accepted[i]].status = HighlightStatus::kRepeated;
-      break;
-    }
+  std::vector<size_t> best_first;
+  for (size_t k = 0; k < judged.size(); ++k)
+    if (verdicts[k].status == HighlightStatus::kAccepted) best_first.push_back(k);
+  std::stable_sort(best_first.begin(), best_first.end(),
+                   [&](size_t a, size_t b) { return of(a).covariance_px.trace() < of(b).covariance_px.trace(); });
+  std::map<std::pair<uint32_t, int>, std::vector<size_t>> kept;  // by view and light
+  for (const size_t k : best_first) {
+    std::vector<size_t>& others = kept[{of(k).view, verdicts[k].explanation.light}];
+    if (std::any_of(others.begin(), others.end(), [&](size_t other) { return LieWithin(of(k), of(other)); }))
+      verdicts[k].status = HighlightStatus::kRepeated;
+    else
+      others.push_back(k);
+  }
 }
 
 // What is seen of a broad lobe peaks beside the point that mirrors the light.

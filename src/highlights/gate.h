@@ -47,9 +47,8 @@ struct GateSummary {
 // unoccluded views in which that light would be mirrored elsewhere; if at any depth the median stays bright, it is
 // paint. What is much fainter than the strong highlights of the same light is texture that slipped through: one lamp
 // on one object varies by Fresnel's factor, not by orders of magnitude. Of a lobe that was found at several scales the
-// find that is known best stays. Accepted peaks are moved to the point that
-// mirrors the light, beside which broad lobes peak on a surface that is seen aslant. `images` is streamed once into
-// small grey copies (image_memory_mb in all).
+// find that is known best stays. Accepted peaks are moved to the point that mirrors the light, beside which broad lobes
+// peak on a surface that is seen aslant. `images` is streamed once into small grey copies (image_memory_mb in all).
 void GateHighlights(const Scene& scene, const ImageSource& images, const TriangleMesh& seed,
                     const std::vector<Light>& lights, const GateOptions& options, std::vector<Highlight>& highlights,
                     GateSummary* summary = nullptr, Progress& progress = Progress::Silent());
