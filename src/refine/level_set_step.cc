@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "refine/band_system.h"
 #include "refine/explained.h"
+#include "refine/gaps.h"
 
 namespace glint {
 
@@ -31,7 +32,7 @@ void LevelSetOptions::Visit(OptionVisitor& v) {
            .max = 1},
           seed_sigma_rel);
   v.Field({.name = "seed_length_rel",
-           .help = "distance over which the seed's errors are alike",
+           .help = "distance over which the seed's errors are alike; more in wide gaps between what is known",
            .unit = "fraction of the diagonal",
            .min = 1e-3,
            .max = 1},
@@ -56,6 +57,9 @@ namespace {
 
 // Where the voxels do not carry more than the seed, it is held to a quarter of one.
 constexpr double kHeldSigmaVoxels = 0.25, kHeldLengthVoxels = 2;
+// In a gap between known places the seed is one guess, wrong all over it in one direction: errors are alike over three
+// times the way to the next place. Further than this from any, nobody looked, and the seed stays.
+constexpr double kGapLengths = 3, kWidestGap = 0.1;
 
 // Of the seed, averaged over the next voxels (1 2 1 along each axis), so that the facets of its mesh are not taken for
 // bends. Linear functions stay; what quadratic ones shift by does not bend.
@@ -85,7 +89,9 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
   static const std::vector<OrientedPoint> kNone;
   const std::vector<OrientedPoint>& contacts = options.highlight_weight > 0 ? input.contacts : kNone;
   const Explained explained(contacts);
-  const double mu = 1 / std::pow(options.seed_sigma_rel * options.seed_length_rel, 2);
+  static const std::vector<SurfacePoint> kNoPoints;
+  const Gaps gaps(options.point_weight > 0 ? input.points : kNoPoints, contacts,
+                  options.outline_weight > 0 ? input.outline : kNone);
   const double held = 1 / std::pow(kHeldSigmaVoxels * kHeldLengthVoxels * h * h, 2);
   const double background = input.seed.half_width_voxels() * input.seed.voxel_size();
   ParallelFor(band.size(), 1 << 12, [&](size_t i) {
@@ -95,6 +101,8 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
     const Eigen::Vector3d normal = length > 1e-12 ? Eigen::Vector3d(g / length) : Eigen::Vector3d::Zero();
     weights.n[i] = normal.cast<float>();
     const bool hold = input.unresolved && input.unresolved->Near(x);
+    const double alike = std::max(options.seed_length_rel, kGapLengths * gaps.At(x, normal, kWidestGap));
+    const double mu = 1 / std::pow(options.seed_sigma_rel * alike, 2);
     // m of DESIGN 3.4: near 1 where no contact reaches, near 0 where one does.
     const double pull = hold ? held : mu * static_cast<float>(1 - explained.At(x, normal));
     const double value = input.seed.Value(x);

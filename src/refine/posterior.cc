@@ -50,13 +50,23 @@ bool At(const Band& band, const std::vector<double>& field, const Eigen::Vector3
   return true;
 }
 
+// Where the bundle has the contacts follows from the same normals and points: counted again, as independent of each
+// other, it would promise more than is known.
+std::vector<OrientedPoint> NormalsAlone(std::vector<OrientedPoint> contacts) {
+  for (OrientedPoint& contact : contacts) contact.sigma_position = 0;
+  return contacts;
+}
+
 }  // namespace
 
 SurfaceDeviation PosteriorDeviation(const StepInput& input, const LevelSetOptions& options,
                                     const std::vector<Eigen::Vector3d>& at) {
   const Band band(input.surface);
-  const SurfaceConstraints constraints = StepConstraints(band, input, options);
-  BandSystem system(band, StepWeights(band, input, options), constraints.rows());
+  const std::vector<OrientedPoint> contacts = NormalsAlone(input.contacts);
+  const StepInput measured{input.surface, input.seed,    input.bend_like_seed, input.surface_area, contacts,
+                           input.points,  input.outline, input.tilts,          input.unresolved};
+  const SurfaceConstraints constraints = StepConstraints(band, measured, options);
+  BandSystem system(band, StepWeights(band, measured, options), constraints.rows());
   const std::vector<double> phi(band.phi().begin(), band.phi().end());
   system.SetRowWeights(constraints.RobustWeights(phi, false));
 
