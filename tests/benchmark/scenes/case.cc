@@ -58,14 +58,16 @@ void WriteNormalMaps(const Scene& scene, const TriangleMesh& truth, double off_d
 
 Case SyntheticCase(const SyntheticOptions& options, const Plan& plan) {
   Case c;
-  c.name = fmt::format("{} {}x{}{}", options.scene, options.lights, options.light_kind,
-                       options.seed == 1 ? "" : fmt::format(" s{}", options.seed));
+  c.name = fmt::format("{} {}x{}{}{}", options.scene, options.lights, options.light_kind,
+                       options.seed == 1 ? "" : fmt::format(" s{}", options.seed), plan.unknown ? " ?" : "");
+  c.num_views = options.views;
+  c.num_lights = options.lights;
   c.project = plan.out / fmt::format("{}-{}-{}-{}-{}", options.scene, options.lights, options.light_kind, options.views,
                                      options.seed);
   const fs::path truth = c.project / "truth";
   if (!fs::exists(truth / "mesh.ply")) WriteSyntheticProject(SynthesizeScene(options), c.project);
   c.truth = ReadMesh(truth / "mesh.ply");
-  c.out = c.project / "glint";
+  c.out = c.project / (plan.unknown ? "unknown" : "glint");
   if (!plan.unknown) c.lights = truth / "lights.json";
   const Scene scene = MakeScene(ReadModel(FindProject(c.project).model));
   c.regions.swept = SweptRegion(c.truth, scene, ReadLights(truth / "lights.json"));
@@ -84,9 +86,9 @@ Case SyntheticCase(const SyntheticOptions& options, const Plan& plan) {
 
 Case VaseCase(const fs::path& vase, const Plan& plan) {
   Case c;
-  c.name = "vase";
+  c.name = plan.unknown ? "vase ?" : "vase";
   c.project = vase / "project";
-  c.out = plan.out / "vase";
+  c.out = plan.out / (plan.unknown ? "vase-unknown" : "vase");
   if (!plan.unknown) c.lights = vase / "lights.json";
   c.truth = ReadMesh(vase / "truth" / "gt_mesh.ply");
   c.truth_from_project = ReadSimilarity(vase / "truth" / "sim3_colmap_to_gt.json");

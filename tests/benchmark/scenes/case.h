@@ -25,6 +25,7 @@ struct Plan {
 
 struct Case {
   std::string name;
+  int num_views = 0, num_lights = 0;  // 0: not a synthetic scene
   std::filesystem::path project, lights, normals, out;
   std::filesystem::path mesh = {};  // empty: the seed is made of the points
   TriangleMesh truth;

@@ -1,8 +1,9 @@
 // The main job measured: synthetic scenes and, where it is there, the path-traced vase. One row a scene: the sparse
 // surface (seed.ply), the same flow with the highlights switched off, and the result, against the truth. Column "< 2
 // %": mean normal error of those of the truth's vertices that have the surface within 2 % of the diagonal.
-//   scenes [--out DIR] [--scenes a,b] [--lights 1,2] [--views N] [--seed S] [--unknown] [--vase DIR] [--set KEY=VALUE]
-//   ...
+//   scenes [--out DIR] [--scenes a,b] [--lights 1,2] [--views N,M] [--seed S,T] [--lights-are given,unknown]
+//          [--vase DIR] [--set KEY=VALUE] ...
+// Ends with a table of all synthetic scenes: a row for each number of views and of lights, given and unknown.
 // --baselines: also the seed smoothed (by the Laplacian and by mean curvature, each with the number of rounds that is
 // best against the truth, which nobody could know), CGAL's Poisson surface of the same points, and the papers' flow.
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "colmap/project.h"
@@ -22,6 +24,7 @@
 #include "pipeline/similarity.h"
 #include "tests/benchmark/scenes/baselines.h"
 #include "tests/benchmark/scenes/case.h"
+#include "tests/benchmark/scenes/summary.h"
 
 namespace glint::benchmark {
 namespace {
@@ -53,27 +56,49 @@ void MeasureBaselines(const Case& c, const Plan& plan) {
   PrintRow(c.name, "flow", MeasureFile(c, c.out / "flow" / "mesh.ply"), seconds);
 }
 
-void MeasureCase(const Case& c, const Plan& plan) {
+void MeasureCase(const Case& c, const Plan& plan, Summary& summary) {
   const fs::path with = c.out / "with", without = c.out / "without";
   try {
     const double without_s =
         plan.without ? RunCase(c, plan, {"refine.use_highlights=false", "refine.tilts.use_shading=false"}, without) : 0;
     const double with_s = RunCase(c, plan, {}, with);
     PrintRow(c.name, "seed", MeasureFile(c, with / "seed.ply"), 0);
-    PrintRow(c.name, "faired seed", MeasureFile(c, with / "stages" / "start.ply"), 0);
+    const Measured start = MeasureFile(c, with / "stages" / "start.ply");
+    PrintRow(c.name, "faired seed", start, 0);
     if (plan.baselines) MeasureBaselines(c, plan);
-    if (plan.without) PrintRow(c.name, "without", MeasureFile(c, without / "mesh.ply"), without_s);
-    PrintRow(c.name, "glint", MeasureFile(c, with / "mesh.ply"), with_s);
+    Outcome outcome;
+    if (plan.without) {
+      outcome.without = MeasureFile(c, without / "mesh.ply");
+      PrintRow(c.name, "without", *outcome.without, without_s);
+    }
+    outcome.start = start;
+    outcome.result = MeasureFile(c, with / "mesh.ply");
+    PrintRow(c.name, "glint", outcome.result, with_s);
     TriangleMesh result = ReadMesh(with / "mesh.ply");
     Transform(c.truth_from_project, result);
-    PrintHonesty(c.name, "highlights pass", result, c.truth, c.regions.swept);
-    PrintHonesty(c.name, "elsewhere", result, c.truth, c.regions.rest);
+    outcome.honesty = MeasureHonesty(c.name, "highlights pass", result, c.truth, c.regions.swept);
+    MeasureHonesty(c.name, "elsewhere", result, c.truth, c.regions.rest);
     TriangleMesh truth = c.truth;
     Transform(c.truth_from_project.inverse(), truth);
-    PrintContacts(c.name, MakeScene(ReadModel(FindProject(c.project).model)), with, truth);
+    outcome.contacts = MeasureContacts(MakeScene(ReadModel(FindProject(c.project).model)), with, truth);
+    PrintContacts(c.name, outcome.contacts);
+    summary.Add(c, plan.unknown, outcome);
   } catch (const Error& error) {
     fmt::print("{:<22} {}\n", c.name, error.what());
+    summary.AddFailure(c, plan.unknown);
   }
+}
+
+using Cell = std::tuple<std::string, uint64_t, int, int>;
+
+std::vector<Cell> Product(const std::vector<std::string>& scenes, const std::vector<uint64_t>& seeds,
+                          const std::vector<int>& views, const std::vector<int>& lights) {
+  std::vector<Cell> cells;
+  for (const std::string& scene : scenes)
+    for (const uint64_t seed : seeds)
+      for (const int v : views)
+        for (const int l : lights) cells.emplace_back(scene, seed, v, l);
+  return cells;
 }
 
 int Main(int argc, char** argv) {
@@ -81,19 +106,23 @@ int Main(int argc, char** argv) {
   fs::path vase;
   Plan plan;
   std::vector<std::string> scenes = {"sphere", "blob", "torus", "hood"};
-  std::vector<int> lights = {1, 2};
+  std::vector<int> lights = {1, 2}, views = {48};
+  std::vector<uint64_t> seeds = {1};
+  std::vector<std::string> lights_are = {"given"};
   SyntheticOptions options;
   app.add_option("--out", plan.out, "folder for the scenes and results");
   app.add_option("--scenes", scenes, "scenes to measure; 'none' for none")->delimiter(',');
   app.add_option("--lights", lights, "numbers of lights")->delimiter(',');
   app.add_option("--kind", options.light_kind, "kind of the lights");
-  app.add_option("--views", options.views, "views");
+  app.add_option("--views", views, "numbers of views")->delimiter(',');
   app.add_option("--width", options.width, "px");
   app.add_option("--height", options.height, "px");
-  app.add_option("--seed", options.seed, "random seed of the scenes");
+  app.add_option("--seed", seeds, "random seeds of the scenes")->delimiter(',');
   app.add_option("--roughness", options.roughness, "GGX alpha");
   app.add_option("--base", options.base, "base colour");
-  app.add_flag("--unknown", plan.unknown, "do not give the lights");
+  app.add_option("--lights-are", lights_are, "given, unknown")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>{"given", "unknown"}));
   app.add_flag("!--no-without", plan.without, "leave out the run without highlights");
   app.add_flag("--baselines", plan.baselines, "also what there is without Glint");
   app.add_option("--normal-maps", plan.normal_maps_deg, "with normal maps, so many degrees off");
@@ -103,18 +132,25 @@ int Main(int argc, char** argv) {
   app.add_option("--vase", vase, "folder of the vase");
   CLI11_PARSE(app, argc, argv);
   PrintHeader();
-  for (const std::string& scene : scenes)
-    for (int count : lights) {
-      if (scene == "none") continue;
-      options.scene = scene;
-      options.lights = count;
-      MeasureCase(SyntheticCase(options, plan), plan);
-    }
-  if (!vase.empty()) {
+  Summary summary;
+  if (scenes != std::vector<std::string>{"none"})
+    for (const auto& [scene, seed, count, lights_count] : Product(scenes, seeds, views, lights))
+      for (const std::string& are : lights_are) {
+        options.scene = scene;
+        options.seed = seed;
+        options.views = count;
+        options.lights = lights_count;
+        plan.unknown = are == "unknown";
+        MeasureCase(SyntheticCase(options, plan), plan, summary);
+      }
+  for (const std::string& are : lights_are) {
+    if (vase.empty()) break;
+    plan.unknown = are == "unknown";
     const Case c = VaseCase(vase, plan);
     PrintRow(c.name, "COLMAP", MeasureFile(c, vase / "colmap-delaunay-sparse.ply"), 0);
-    MeasureCase(c, plan);
+    MeasureCase(c, plan, summary);
   }
+  summary.Print();
   return 0;
 }
 

@@ -52,8 +52,7 @@ Eigen::Vector3d InterpolatedNormal(const TriangleMesh& mesh, const RayHit& hit) 
       .normalized();
 }
 
-void PrintContacts(const std::string& scene, const Scene& views, const std::filesystem::path& out,
-                   const TriangleMesh& truth) {
+ContactErrors MeasureContacts(const Scene& views, const std::filesystem::path& out, const TriangleMesh& truth) {
   const std::vector<Light> lights = ReadLights(out / "lights.json");
   TriangleMesh mesh = ReadMesh(out / "mesh.ply");
   const RayCaster on_truth(truth), on_mesh(mesh);
@@ -71,23 +70,28 @@ void PrintContacts(const std::string& scene, const Scene& views, const std::file
     const Eigen::Vector3d true_normal = InterpolatedNormal(truth, *a);
     data.push_back(kDegrees * std::acos(std::clamp(half.dot(true_normal), -1.0, 1.0)));
     result.push_back(kDegrees * std::acos(std::clamp(InterpolatedNormal(mesh, *b).dot(true_normal), -1.0, 1.0)));
-    depth.push_back(100 * std::abs(a->t - b->t) / diagonal);
+    depth.push_back(std::abs(a->t - b->t) / diagonal);
   }
-  const ErrorStats d = StatsOf(data), r = StatsOf(result), z = StatsOf(depth);
+  return {StatsOf(data), StatsOf(result), StatsOf(depth)};
+}
+
+void PrintContacts(const std::string& scene, const ContactErrors& errors) {
+  const auto& [half, result, depth] = errors;
   fmt::print(
       "{:<22} {:<12} {} highlights: half vector {:.3f} median {:.3f} 95 %, result there {:.3f}, {:.3f} deg; "
       "depth {:.4f}, {:.4f} % diag\n",
-      scene, "contacts", d.count, d.median, d.p95, r.median, r.p95, z.median, z.p95);
+      scene, "contacts", half.count, half.median, half.p95, result.median, result.p95, 100 * depth.median,
+      100 * depth.p95);
 }
 
-void PrintHonesty(const std::string& scene, const std::string& where, const TriangleMesh& mesh,
-                  const TriangleMesh& truth, const std::vector<uint8_t>& region) {
+Honesty MeasureHonesty(const std::string& scene, const std::string& where, const TriangleMesh& mesh,
+                       const TriangleMesh& truth, const std::vector<uint8_t>& region) {
   const std::vector<float>*position_rel = nullptr, *normal_deg = nullptr;
   for (const auto& [name, values] : mesh.scalars) {
     if (name == "sigma_position_rel") position_rel = &values;
     if (name == "sigma_normal_deg") normal_deg = &values;
   }
-  if (!position_rel || !normal_deg) return;
+  if (!position_rel || !normal_deg) return {};
   const MeshComparison c = CompareMeshes(mesh, truth);
   const ClosestPointQuery query(mesh);
   std::vector<double> position, normal, off_position, off_normal;
@@ -100,14 +104,16 @@ void PrintHonesty(const std::string& scene, const std::string& where, const Tria
     off_normal.push_back(c.reference_normal_deg[v] / normal.back());
   }
   const auto share = [](const std::vector<double>& off) {
-    return 100.0 * static_cast<double>(std::count_if(off.begin(), off.end(), [](double o) { return o < 2; })) /
+    return static_cast<double>(std::count_if(off.begin(), off.end(), [](double o) { return o < 2; })) /
            static_cast<double>(std::max<size_t>(off.size(), 1));
   };
+  const Honesty honesty{share(off_position), share(off_normal)};
   fmt::print(
       "{:<22} {:<12} {:<16} within 2 sigma: position {:.1f} %, normal {:.1f} %; median sigma {:.4f} % diag, {:.3f} "
       "deg; median error in sigmas {:.2f}, {:.2f}\n",
-      scene, "honesty", where, share(off_position), share(off_normal), 100 * StatsOf(position).median,
+      scene, "honesty", where, 100 * honesty.position, 100 * honesty.normal, 100 * StatsOf(position).median,
       StatsOf(normal).median, StatsOf(off_position).median, StatsOf(off_normal).median);
+  return honesty;
 }
 
 }  // namespace glint::benchmark
