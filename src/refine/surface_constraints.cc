@@ -13,6 +13,10 @@ constexpr double kFootprintReach = 2.2;  // standard deviations
 // Of a tilt's direction across the normal: with less, the normal may turn either way.
 constexpr double kLeastLever = 0.15;
 
+// A normal that is off the current one by more (47 degrees) lies on another surface, or the light is not its own:
+// trusted, it would be met by a fold, which no later solve takes back.
+constexpr double kMostTurn = 0.8;
+
 // Weights of a squared residual in standard deviations. Contacts: Cauchy, they were judged in the bundle already.
 // Points: Geman and McClure, which lets go of the few that lie centimetres off.
 double ContactWeight(double squared) { return 1 / (1 + squared / 4); }
@@ -150,13 +154,15 @@ void SurfaceConstraints::EndGroup(size_t first, bool is_point, int contact, doub
 std::vector<double> SurfaceConstraints::RobustWeights(const std::vector<double>& phi, bool trust_contacts) const {
   std::vector<double> weights(rows_.size());
   for (const auto& [first, last, is_point, contact, share] : groups_) {
-    double squared = 0;
+    double squared = 0, raw = 0;
     for (size_t r = first; r < last; ++r) {
       const double residual = rows_.Dot(r, phi) - rows_.target[r];
       squared += base_weight_[r] * residual * residual;
+      raw += residual * residual;
     }
     squared /= share;
-    const double weight = is_point ? PointWeight(squared) : (trust_contacts ? 1 : ContactWeight(squared));
+    const bool trusted = trust_contacts && (contact < 0 || raw < kMostTurn * kMostTurn);
+    const double weight = is_point ? PointWeight(squared) : (trusted ? 1 : ContactWeight(squared));
     for (size_t r = first; r < last; ++r) weights[r] = weight * base_weight_[r];
   }
   return weights;

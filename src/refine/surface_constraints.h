@@ -42,7 +42,8 @@ class SurfaceConstraints {
   int contacts_off_band() const { return contacts_off_band_; }
   int points_off_band() const { return points_off_band_; }
 
-  // A weight a row for the field phi: less the more standard deviations it is off. `trust_contacts`: not of contacts.
+  // A weight a row for the field phi: less the more standard deviations it is off. `trust_contacts`: not of contacts,
+  // unless their normals are off by more than any seed's are.
   std::vector<double> RobustWeights(const std::vector<double>& phi, bool trust_contacts) const;
 
   // Errors of the rows' targets where the lights are off: `off` has a vector of independent standard normals a light.

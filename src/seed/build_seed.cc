@@ -248,6 +248,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   if (out.smooth.vertices.size() != faired.vertices.size()) MarkFine(faired, out.smooth);
   for (int point : shape.sparse.scene_point)
     if (point >= 0) out.point_used[point] = 1;
+  for (int point : shape.sparse.beside) out.point_used[point] = 1;
   out.fate = Fates(reliability, choice, out.point_used);
   out.region = BoundingBox(out.mesh).merged(BoundingBox(out.smooth));
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kRegionMargin * Diagonal(out.smooth));

@@ -23,8 +23,13 @@ constexpr double kLeastMended = 0.5;    // of the sparse surface's volume
 constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
 constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
 
-// What the smooth surface should pass: the object's points on the sparse surface, and its foot on the ground. Many
-// views that agree are hardly wrong; two views agree on any mismatch along their epipolar line.
+// Many views that agree are hardly wrong; two views agree on any mismatch along their epipolar line.
+Attachment AttachmentOf(const Scene& scene, const PointReliability& reliability, int point) {
+  const double views = static_cast<double>(scene.points[point].observations.size());
+  return {scene.points[point].position, reliability.sigma[point], std::clamp((views - 1) / 2, 0.5, 3.0), point};
+}
+
+// What the smooth surface should pass: the object's points on the sparse surface, and its foot on the ground.
 std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& surface,
                                     const PointReliability& reliability, const RimEvidence& rim) {
   const double foot_sigma = kFootSigmaRel * Diagonal(surface.mesh);
@@ -33,15 +38,14 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
     if (surface.scene_point[v] == kMiddleVertex) continue;
     Attachment a{surface.mesh.vertices[v], foot_sigma, 1, surface.scene_point[v]};
     if (const int point = surface.scene_point[v]; point >= 0) {
-      const double views = static_cast<double>(scene.points[point].observations.size());
-      a.sigma = reliability.sigma[point];
-      a.credit = std::clamp((views - 1) / 2, 0.5, 3.0);
+      a = AttachmentOf(scene, reliability, point);
     } else if (point <= kFirstRimVertex) {
       a.sigma = rim.points[kFirstRimVertex - point].sigma;
       a.extra = true;
     }
     attachments.push_back(a);
   }
+  for (const int point : surface.beside) attachments.push_back(AttachmentOf(scene, reliability, point));
   return attachments;
 }
 

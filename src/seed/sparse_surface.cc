@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "geometry/closest_point.h"
 #include "seed/cell_surface.h"
 #include "seed/convex_hull.h"
 #include "seed/sparse_cells.h"
@@ -19,6 +20,7 @@ constexpr size_t kMinFootPoints = 3;
 constexpr std::array<double, 4> kClaims = {0, 0.25, 1, 4};
 constexpr double kEnoughPoints = 0.95;  // share of the object's points that the solid explains
 constexpr double kManyMore = 0.1;       // of the points: what a larger claim must win
+constexpr double kBesideRel = 0.02;     // of the diagonal
 constexpr size_t kMinContextViews = 3;  // two views agree on many a mismatch, and the context needs no rare points
 
 // Where the object stands: the part of the ground below its lowest points.
@@ -130,6 +132,20 @@ double PointsExplained(const SparseCells& cells, const std::vector<uint8_t>& lab
   return explained;
 }
 
+// Points of the object that are no vertices of the surface but lie on it.
+std::vector<int> PointsBeside(const Scene& scene, const ObjectChoice& choice, const SparseSurface& surface) {
+  const ClosestPointQuery query(surface.mesh);
+  const double reach = kBesideRel * Diagonal(surface.mesh);
+  std::vector<uint8_t> is_vertex(scene.points.size(), 0);
+  for (const int point : surface.scene_point)
+    if (point >= 0) is_vertex[point] = 1;
+  std::vector<int> beside;
+  for (size_t i = 0; i < scene.points.size(); ++i)
+    if (choice.role[i] == PointRole::kObject && !is_vertex[i] && query.Find(scene.points[i].position, reach))
+      beside.push_back(static_cast<int>(i));
+  return beside;
+}
+
 SparseSurface SurfaceOf(const SparseCells& cells, const std::vector<uint8_t>& labels) {
   SparseSurface out;
   std::vector<int> vertex_point;
@@ -160,7 +176,13 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
   const SparseCells cells = BuildSparseCells(scene, vertices, context, rim.free_lines, matter);
   const Tetrahedra& t = cells.tetrahedra;
   if (t.cells.empty()) return {};
-  const std::vector<uint8_t> permitted = Permitted(cells, choice);
+  std::vector<uint8_t> permitted = Permitted(cells, choice);
+  if (options.see_through) {
+    KeepLargest(t, permitted);
+    SparseSurface hull = SurfaceOf(cells, permitted);
+    hull.beside = PointsBeside(scene, choice, hull);
+    return hull;
+  }
   const double views = MeanViews(scene, vertices);
   const auto num_points = static_cast<double>(std::count(choice.role.begin(), choice.role.end(), PointRole::kObject));
   std::vector<uint8_t> best;

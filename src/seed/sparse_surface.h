@@ -18,11 +18,13 @@ inline constexpr int kFirstRimVertex = -3;  // that of rim point i: kFirstRimVer
 struct SparseSurface {
   TriangleMesh mesh;  // closed, oriented outward, one piece; empty if the points enclose nothing
   std::vector<int>
-      scene_point;  // per vertex: index into the scene's points, kFootVertex, kMiddleVertex, or a rim point's
+      scene_point;          // per vertex: index into the scene's points, kFootVertex, kMiddleVertex, or a rim point's
+  std::vector<int> beside;  // points of the scene that are no vertices but lie on it: of a hull, which has few vertices
 };
 
 // Matter touches only the object's points, its rim and the ground. Where the ground is hidden below the object, points
-// are put on it, so that an object without texture at its foot still stands on the plane.
+// are put on it, so that an object without texture at its foot still stands on the plane. What is seen through
+// (options.see_through) is the convex hull of its points: no line of sight says where a pane ends.
 SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reliability, const ObjectChoice& choice,
                                 const CutOptions& options, const RimEvidence& rim = {});
 

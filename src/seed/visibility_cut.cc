@@ -44,6 +44,10 @@ void CutOptions::Visit(OptionVisitor& v) {
            .min = 0,
            .max = 1e3},
           fill);
+  v.Field(
+      {.name = "see_through",
+       .help = "The object is of glass: lines of sight end behind it, so its surface is the convex hull of its points"},
+      see_through);
 }
 
 std::vector<uint8_t> CutCells(const Tetrahedra& tetrahedra, const RayVotes& votes,

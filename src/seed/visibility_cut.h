@@ -13,6 +13,7 @@ namespace glint {
 struct CutOptions {
   double quality = 1.0;  // cost of a badly shaped facet, in lines of sight
   double fill = 0.5;     // claim of matter on a cell that no line of sight crosses, in lines of sight
+  bool see_through = false;
 
   void Visit(OptionVisitor& v);
 };

@@ -208,6 +208,46 @@ TEST(BuildSeed, AFlatObjectIsNotTheGround) {
   ASSERT_FALSE(seed.smooth.empty()) << summary.BriefReport();
 }
 
+// A windscreen over a textured box: its frame and some dust have points, and the box is seen through it.
+TEST(BuildSeed, APaneIsWhatItsFrameAndDustLieOn) {
+  Scene scene = DomeScene(24, 5);
+  const auto all = [](const Eigen::Vector3d&) { return true; };
+  const auto on_pane = [](double r, double turn) {
+    return Eigen::Vector3d(r * std::cos(turn), r * std::sin(turn), 0.6 - 0.3 * r * r);
+  };
+  for (int i = 0; i < 80; ++i) AddPoint(scene, on_pane(0.88 + 0.12 * (i % 3) / 2, 2.4 * i), all);
+  for (int i = 0; i < 16; ++i) AddPoint(scene, on_pane(0.85 * std::sqrt((i + 0.5) / 16), 2.4 * i), all);
+  for (int i = 0; i < 80; ++i) {
+    const double r = 0.85 * std::sqrt((i + 0.5) / 80), turn = 2.4 * i + 1;
+    AddPoint(scene, {r * std::cos(turn), r * std::sin(turn), 0.1}, all);
+  }
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector3d x(0.9 * std::cos(2.4 * i), 0.9 * std::sin(2.4 * i), -0.5 + 0.7 * i / 60);
+    AddPoint(scene, x, [&](const Eigen::Vector3d& eye) { return x.head<2>().dot((eye - x).head<2>()) > 0.3; });
+  }
+  SeedOptions options = Coarse();
+  const auto farthest = [&](const TriangleMesh& mesh) {
+    const ClosestPointQuery query(mesh);
+    double most = 0;
+    for (int i = 0; i < 50; ++i)
+      most = std::max(most, std::sqrt(query.Find(on_pane(0.9 * std::sqrt(i / 50.0), 2.4 * i))->squared_distance));
+    return most;
+  };
+  const SeedResult opaque = BuildSeed(scene, options);
+  options.surface.see_through = true;
+  const SeedResult glass = BuildSeed(scene, options);
+  ASSERT_FALSE(glass.smooth.empty());
+  EXPECT_LT(farthest(glass.smooth), 0.02);
+  EXPECT_GT(farthest(opaque.smooth), 0.1);
+  // What lies on it is used, what lies behind it is not.
+  for (size_t i = 0; i < scene.points.size(); ++i) {
+    const Eigen::Vector3d& x = scene.points[i].position;
+    const bool dust = x.z() > 0.25 && x.head<2>().norm() < 0.86, inside = x.z() == 0.1 && x.head<2>().norm() < 0.6;
+    EXPECT_TRUE(glass.point_used[i] || !dust) << x.transpose();
+    EXPECT_FALSE(glass.point_used[i] && inside) << x.transpose();
+  }
+}
+
 TEST(BuildSeed, FollowsScaleAndPlaceOfTheWorld) {
   Scene scene = DomeScene(36, 5);
   AddSphere(scene, 150);

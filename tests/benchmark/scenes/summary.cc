@@ -27,8 +27,8 @@ void Summary::Print() const {
   std::map<Key, std::vector<Entry>> rows = rows_;
   for (const auto& [key, names] : failed_) rows[key];
   fmt::print("\n{:>5} {:>6} {:<8} {:>6} {:>20} {:>20} {:>20} {:>20} {:>22} {:>20} {:>20}\n", "views", "lights", "are",
-             "scenes", "contacts (% diag)", "normals (deg)", "distance (% diag)", "against without", "elsewhere, % worse",
-             "2 sigma: place (%)", "normal (%)");
+             "scenes", "contacts (% diag)", "normals (deg)", "distance (% diag)", "against without",
+             "elsewhere, % worse", "2 sigma: place (%)", "normal (%)");
   for (const auto& [key, entries] : rows) {
     const auto& [views, lights, unknown] = key;
     if (views == 0) continue;
@@ -37,20 +37,21 @@ void Summary::Print() const {
         failed == failed_.end() ? "" : fmt::format("no result: {}", fmt::join(failed->second, ", "));
     fmt::print("{:>5} {:>6} {:<8} {:>6}", views, lights, unknown ? "unknown" : "given", entries.size());
     if (!entries.empty()) {
-      const bool compared = std::all_of(entries.begin(), entries.end(), [](const Entry& e) { return !!e.outcome.without; });
-      fmt::print(
-          " {:>20} {:>20} {:>20} {:>20} {:>22} {:>20} {:>20}",
-          MedianAndWorst(entries, true, 3, [](const Outcome& o) { return 100 * o.contacts.depth_rel.median; }),
-          MedianAndWorst(entries, true, 2, [](const Outcome& o) { return o.result.normal_in.mean; }),
-          MedianAndWorst(entries, true, 3, [](const Outcome& o) { return 100 * o.result.distance_in.mean; }),
-          !compared ? "-" : MedianAndWorst(entries, true, 2, [](const Outcome& o) {
-            return o.result.normal_in.mean / o.without->normal_in.mean;
-          }),
-          MedianAndWorst(entries, true, 3, [](const Outcome& o) {
-            return 100 * (o.result.distance_out.mean - o.start.distance_out.mean);
-          }),
-          MedianAndWorst(entries, false, 0, [](const Outcome& o) { return 100 * o.honesty.position; }),
-          MedianAndWorst(entries, false, 0, [](const Outcome& o) { return 100 * o.honesty.normal; }));
+      const bool compared =
+          std::all_of(entries.begin(), entries.end(), [](const Entry& e) { return !!e.outcome.without; });
+      fmt::print(" {:>20} {:>20} {:>20} {:>20} {:>22} {:>20} {:>20}",
+                 MedianAndWorst(entries, true, 3, [](const Outcome& o) { return 100 * o.contacts.depth_rel.median; }),
+                 MedianAndWorst(entries, true, 2, [](const Outcome& o) { return o.result.normal_in.mean; }),
+                 MedianAndWorst(entries, true, 3, [](const Outcome& o) { return 100 * o.result.distance_in.mean; }),
+                 !compared ? "-"
+                           : MedianAndWorst(
+                                 entries, true, 2,
+                                 [](const Outcome& o) { return o.result.normal_in.mean / o.without->normal_in.mean; }),
+                 MedianAndWorst(
+                     entries, true, 3,
+                     [](const Outcome& o) { return 100 * (o.result.distance_out.mean - o.start.distance_out.mean); }),
+                 MedianAndWorst(entries, false, 0, [](const Outcome& o) { return 100 * o.honesty.position; }),
+                 MedianAndWorst(entries, false, 0, [](const Outcome& o) { return 100 * o.honesty.normal; }));
     }
     fmt::print(" {}\n", without_result);
   }

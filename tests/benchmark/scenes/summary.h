@@ -25,7 +25,9 @@ struct Outcome {
 // shares within two standard deviations.
 class Summary {
  public:
-  void Add(const Case& c, bool unknown, const Outcome& outcome) { rows_[KeyOf(c, unknown)].push_back({c.name, outcome}); }
+  void Add(const Case& c, bool unknown, const Outcome& outcome) {
+    rows_[KeyOf(c, unknown)].push_back({c.name, outcome});
+  }
   void AddFailure(const Case& c, bool unknown) { failed_[KeyOf(c, unknown)].push_back(c.name); }
   // Nothing if there is no synthetic scene.
   void Print() const;
