@@ -21,6 +21,7 @@ constexpr int kMaxStiffenings = 4;
 constexpr std::array<double, 3> kMendVoxels = {0.7, 0.5, 1.0};
 constexpr double kLeastMended = 0.5;    // of the sparse surface's volume
 constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
+constexpr double kBackSigmaRel = 5e-3;  // of the diagonal: how well the back of a thin wall is
 constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
 
 // Many views that agree are hardly wrong; two views agree on any mismatch along their epipolar line.
@@ -39,6 +40,9 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
     Attachment a{surface.mesh.vertices[v], foot_sigma, 1, surface.scene_point[v]};
     if (const int point = surface.scene_point[v]; point >= 0) {
       a = AttachmentOf(scene, reliability, point);
+    } else if (point == kBackVertex) {
+      a.sigma = kBackSigmaRel * Diagonal(surface.mesh);
+      a.extra = true;
     } else if (point <= kFirstRimVertex) {
       a.sigma = rim.points[kFirstRimVertex - point].sigma;
       a.extra = true;

@@ -20,6 +20,9 @@ constexpr size_t kMinFootPoints = 3;
 constexpr std::array<double, 4> kClaims = {0, 0.25, 1, 4};
 constexpr double kEnoughPoints = 0.95;  // share of the object's points that the solid explains
 constexpr double kManyMore = 0.1;       // of the points: what a larger claim must win
+constexpr double kPoor = 0.5;           // share of the object's points that a solid explains and does not hide
+constexpr double kEnoughOfAWall = 0.9;  // the same share
+constexpr double kWallRel = 0.02;       // of the object's diagonal
 constexpr double kBesideRel = 0.02;     // of the diagonal
 constexpr size_t kMinContextViews = 3;  // two views agree on many a mismatch, and the context needs no rare points
 
@@ -146,12 +149,63 @@ std::vector<int> PointsBeside(const Scene& scene, const ObjectChoice& choice, co
   return beside;
 }
 
+// How many points' lines of sight end behind matter.
+double PointsHidden(const SparseCells& cells, const std::vector<uint8_t>& labels, double views) {
+  const Tetrahedra& t = cells.tetrahedra;
+  int64_t votes = 0;
+  for (size_t c = 0; c < labels.size(); ++c)
+    for (int k = 0; k < 4 && labels[c]; ++k)
+      if (!labels[t.neighbors[c][k]]) votes += cells.votes.facets[c][k];
+  return static_cast<double>(votes) / static_cast<double>(kVote) / std::max(views, 1.0);
+}
+
 SparseSurface SurfaceOf(const SparseCells& cells, const std::vector<uint8_t>& labels) {
   SparseSurface out;
   std::vector<int> vertex_point;
   out.mesh = CellSurface(cells.tetrahedra, labels, &vertex_point);
   for (int p : vertex_point) out.scene_point.push_back(p >= 0 ? cells.scene_point[p] : kMiddleVertex);
   return out;
+}
+
+struct Solid {
+  std::vector<uint8_t> labels;
+  double explained = 0, hidden = 0;  // points
+};
+
+// The one that explains most, of those that ever larger claims give.
+Solid BestSolid(const SparseCells& cells, const std::vector<uint8_t>& permitted, const CutOptions& options,
+                double views, double num_points) {
+  const Tetrahedra& t = cells.tetrahedra;
+  Solid best;
+  for (const double claim : kClaims) {
+    std::vector<uint8_t> labels = CutCells(t, cells.votes, permitted, options, claim * views);
+    KeepLargest(t, labels);
+    FillCavities(t, labels);
+    const double explained = PointsExplained(cells, labels);
+    if (!best.labels.empty() && explained < best.explained + kManyMore * num_points) continue;
+    best = {std::move(labels), explained, 0};
+    if (explained >= kEnoughPoints * num_points) break;
+  }
+  best.hidden = PointsHidden(cells, best.labels, views);
+  return best;
+}
+
+// Behind each of the object's points, away from the views that see it, another: the back of a thin wall. Also in
+// `matter`.
+void AddBacks(const Scene& scene, size_t num_object, std::vector<SparseVertex>& vertices,
+              std::vector<MatterBehind>& matter) {
+  Eigen::AlignedBox3d box;
+  for (size_t k = 0; k < num_object; ++k) box.extend(vertices[k].position);
+  const double depth = kWallRel * box.diagonal().norm();
+  for (size_t k = 0; k < num_object; ++k) {
+    const ScenePoint& point = scene.points[vertices[k].scene_point];
+    Eigen::Vector3d toward = Eigen::Vector3d::Zero();
+    for (const Observation& o : point.observations)
+      toward += (scene.views[o.view].Center() - point.position).normalized();
+    const Eigen::Vector3d away = -toward.normalized();
+    matter.push_back({static_cast<int>(k), away, depth});
+    vertices.push_back({point.position + depth * away, kBackVertex, 0});
+  }
 }
 
 }  // namespace
@@ -167,37 +221,32 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
     else if (scene.points[i].observations.size() >= kMinContextViews)
       context.push_back(static_cast<int>(i));
   }
+  const size_t num_object = vertices.size();
   for (const Eigen::Vector3d& x : Foot(scene, choice).Points()) vertices.push_back({x, kFootVertex, 0});
   std::vector<MatterBehind> matter;
   for (size_t i = 0; i < rim.points.size(); ++i) {
     matter.push_back({static_cast<int>(vertices.size()), -rim.points[i].normal, rim.depth});
     vertices.push_back({rim.points[i].position, kFirstRimVertex - static_cast<int>(i), rim.points[i].sigma});
   }
-  const SparseCells cells = BuildSparseCells(scene, vertices, context, rim.free_lines, matter);
-  const Tetrahedra& t = cells.tetrahedra;
-  if (t.cells.empty()) return {};
+  SparseCells cells = BuildSparseCells(scene, vertices, context, rim.free_lines, matter);
+  if (cells.tetrahedra.cells.empty()) return {};
   std::vector<uint8_t> permitted = Permitted(cells, choice);
   if (options.see_through) {
-    KeepLargest(t, permitted);
+    KeepLargest(cells.tetrahedra, permitted);
     SparseSurface hull = SurfaceOf(cells, permitted);
     hull.beside = PointsBeside(scene, choice, hull);
     return hull;
   }
   const double views = MeanViews(scene, vertices);
-  const auto num_points = static_cast<double>(std::count(choice.role.begin(), choice.role.end(), PointRole::kObject));
-  std::vector<uint8_t> best;
-  double most = 0;
-  for (const double claim : kClaims) {
-    std::vector<uint8_t> labels = CutCells(t, cells.votes, permitted, options, claim * views);
-    KeepLargest(t, labels);
-    FillCavities(t, labels);
-    const double explained = PointsExplained(cells, labels);
-    if (!best.empty() && explained < most + kManyMore * num_points) continue;
-    best = std::move(labels);
-    most = explained;
-    if (most >= kEnoughPoints * num_points) break;
-  }
-  return SurfaceOf(cells, best);
+  const auto num_points = static_cast<double>(num_object);
+  const Solid solid = BestSolid(cells, permitted, options, views, num_points);
+  if (solid.explained - solid.hidden >= kPoor * num_points) return SurfaceOf(cells, solid.labels);
+  // It is torn, or fills what many looked into: a bowl of whose outside little is known. As a wall?
+  AddBacks(scene, num_object, vertices, matter);
+  const SparseCells walled = BuildSparseCells(scene, vertices, context, rim.free_lines, matter);
+  const Solid wall = BestSolid(walled, Permitted(walled, choice), options, views, num_points);
+  const bool better = wall.explained - wall.hidden >= kEnoughOfAWall * num_points;
+  return better ? SurfaceOf(walled, wall.labels) : SurfaceOf(cells, solid.labels);
 }
 
 }  // namespace glint

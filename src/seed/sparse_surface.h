@@ -13,7 +13,8 @@ namespace glint {
 // What a vertex of the sparse surface is, where it is no point of the scene.
 inline constexpr int kFootVertex = -1;      // on the ground below the object
 inline constexpr int kMiddleVertex = -2;    // in the middle of an edge, where sheets were separated
-inline constexpr int kFirstRimVertex = -3;  // that of rim point i: kFirstRimVertex - i
+inline constexpr int kBackVertex = -3;      // behind a point of a thin wall
+inline constexpr int kFirstRimVertex = -4;  // that of rim point i: kFirstRimVertex - i
 
 struct SparseSurface {
   TriangleMesh mesh;  // closed, oriented outward, one piece; empty if the points enclose nothing

@@ -208,6 +208,35 @@ TEST(BuildSeed, AFlatObjectIsNotTheGround) {
   ASSERT_FALSE(seed.smooth.empty()) << summary.BriefReport();
 }
 
+// A bowl whose outside is blank but for a few points: the space in it, into which all look, is not the object.
+TEST(BuildSeed, ABowlIsItsWallAndNotWhatIsInIt) {
+  Scene scene = DomeScene(9, 5);
+  const auto at = [](double radius, double height, double turn) {
+    const double z = -height, r = std::sqrt(1 - z * z);
+    return Eigen::Vector3d(radius * r * std::cos(turn), radius * r * std::sin(turn), radius * z);
+  };
+  for (int i = 0; i < 220; ++i) {
+    const Eigen::Vector3d x = at(1, (i + 0.5) / 220, 2.4 * i);
+    AddPoint(scene, x, [&](const Eigen::Vector3d& eye) {
+      const double share = x.z() / (x.z() - eye.z());  // of the way, where it leaves the mouth
+      return (x + share * (eye - x)).norm() < 0.97;
+    });
+  }
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector3d x = at(1.06, 0.7 * i / 60, 2.4 * i);
+    AddPoint(scene, x, [&](const Eigen::Vector3d& eye) { return x.dot(eye - x) > 0.2; });
+  }
+  AddGround(scene, -1.1, 4, 12);
+  const SeedResult seed = BuildSeed(scene, Coarse());
+  ASSERT_FALSE(seed.smooth.empty());
+  EXPECT_LT(SignedVolume(seed.smooth), 0.4 * 2 * M_PI / 3);
+  const ClosestPointQuery query(seed.smooth);
+  std::vector<double> off;
+  for (int i = 0; i < 100; ++i)
+    off.push_back(std::sqrt(query.Find(at(1, 0.3 + 0.7 * i / 100, 2.4 * i))->squared_distance));
+  EXPECT_LT(Median(off), 0.02);
+}
+
 // A windscreen over a textured box: its frame and some dust have points, and the box is seen through it.
 TEST(BuildSeed, APaneIsWhatItsFrameAndDustLieOn) {
   Scene scene = DomeScene(24, 5);
