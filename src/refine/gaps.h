@@ -16,16 +16,16 @@ class Gaps {
   // Points without a normal count for nothing: they are far from the surface.
   Gaps(const std::vector<SurfacePoint>& points, const std::vector<OrientedPoint>& contacts,
        const std::vector<OrientedPoint>& outline);
-  // From x, where the surface faces along `normal`, to the next known place that faces as it does, give or take half a
-  // hundredth; `at_most` if that is further away.
+  // From x, where the surface faces along `normal`, to the next known place that faces as it does, up to 20 degrees;
+  // from there to 60, places are as if farther away. Not more than `at_most`.
   double At(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, double at_most) const;
 
  private:
   struct Places {
     std::vector<Eigen::Vector3d> positions, normals;
   };
-  static Places Thinned(const std::vector<SurfacePoint>& points, const std::vector<OrientedPoint>& contacts,
-                        const std::vector<OrientedPoint>& outline);
+  static Places All(const std::vector<SurfacePoint>& points, const std::vector<OrientedPoint>& contacts,
+                    const std::vector<OrientedPoint>& outline);
 
   const Places places_;
   const OrientedTree tree_;

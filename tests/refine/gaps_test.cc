@@ -34,13 +34,14 @@ TEST(Gaps, IsTheWayToTheNextPlaceThatFacesAlike) {
     const Eigen::Vector3d x = place(), n = Direction(random);
     double nearest = std::numeric_limits<double>::infinity();
     const auto look = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
-      if (n.dot(normal) >= 0.5) nearest = std::min(nearest, (position - x).norm());
+      const double alike = std::min((n.dot(normal) - 0.5) / 0.44, 1.0);
+      if (alike > 0) nearest = std::min(nearest, (position - x).norm() / alike);
     };
     for (const SurfacePoint& p : points) look(p.position, p.normal);
     for (const OrientedPoint& p : contacts) look(p.position, p.normal);
     for (const OrientedPoint& p : outline) look(p.position, p.normal);
-    EXPECT_NEAR(gaps.At(x, n, 1), std::min(nearest, 1.0), 0.009);
-    EXPECT_NEAR(gaps.At(x, n, 0.1), std::min(nearest, 0.1), 0.009);
+    EXPECT_NEAR(gaps.At(x, n, 1), std::min(nearest, 1.0), 1e-12);
+    EXPECT_NEAR(gaps.At(x, n, 0.1), std::min(nearest, 0.1), 1e-12);
   }
 }
 
