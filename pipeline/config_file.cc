@@ -34,7 +34,7 @@ class YamlReader {
         continue;
       }
       const std::string key = pair.first.Scalar();
-      const std::string path = section.empty() ? key : section + "." + key;
+      const std::string path = section.empty() ? key : fmt::format("{}.{}", section, key);
       if (!seen.insert(key).second) problems_.messages.push_back(fmt::format("{}: {}: given twice", where, path));
       ReadValue(pair.second, path, where);
     }

@@ -88,6 +88,7 @@ int VisitObject(dl_phdr_info* object, size_t, void* data) {
   for (int i = 0; ours && search.id.empty() && i < object->dlpi_phnum; ++i) {
     const ElfW(Phdr)& part = object->dlpi_phdr[i];
     if (part.p_type == PT_NOTE)
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader tells addresses as numbers
       search.id = FindBuildIdNote(reinterpret_cast<const char*>(object->dlpi_addr + part.p_vaddr), part.p_memsz);
   }
   return ours ? 1 : 0;

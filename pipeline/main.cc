@@ -67,9 +67,7 @@ int RunAction(const glint::CommandLine& line) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int Start(int argc, char** argv) {
   CLI::App app(kAbout, "glint");
   glint::CommandLine line;
   for (int i = 0; i < argc; ++i) line.text += (i > 0 ? " " : "") + Quoted(argv[i]);
@@ -82,4 +80,18 @@ int main(int argc, char** argv) {
     return glint::kBadInput;
   }
   return RunAction(line);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Only what goes wrong before there is a terminal to tell it on gets here.
+  try {
+    return Start(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+  } catch (...) {
+    std::fputs("error: unknown\n", stderr);
+  }
+  return glint::kBug;
 }

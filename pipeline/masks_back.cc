@@ -13,7 +13,8 @@ fs::path KeepMasksForFeatures(const fs::path& project, const fs::path& out, bool
     throw InputError(project.string(), "--masks-back",
                      "is a COLMAP project, on which COLMAP is not run; expected the photographs or a film");
   const Workspace workspace(out);
-  const fs::path found = workspace.HighlightMasks(), kept = workspace.root() / "feature_masks";
+  const fs::path found = workspace.HighlightMasks();
+  fs::path kept = workspace.root() / "feature_masks";
   const bool there = fs::is_directory(kept);
   if (there && (!anew || !fs::is_directory(found))) return kept;
   if (!fs::is_directory(found))

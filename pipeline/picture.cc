@@ -85,8 +85,9 @@ cv::Mat RenderMesh(const TriangleMesh& mesh, const View& view, int width,
     for (int x = 0; x < width; ++x) {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (int s = 0; s < kSamples * kSamples; ++s) {
-        const Eigen::Vector2d px((x + (s % kSamples + 0.5) / kSamples) / scale,
-                                 (static_cast<double>(y) + (s / kSamples + 0.5) / kSamples) / scale);
+        const int column = s % kSamples, row = s / kSamples;
+        const Eigen::Vector2d px((x + (column + 0.5) / kSamples) / scale,
+                                 (static_cast<double>(y) + (row + 0.5) / kSamples) / scale);
         const auto ray = view.RayThrough(px);
         const auto hit = ray ? caster.Intersect(origin, *ray) : std::nullopt;
         sum += hit ? Shade(mesh, *hit, *ray, up, colors) : Eigen::Vector3d(255, 255, 255);

@@ -42,7 +42,7 @@ std::string DataElement(const std::string& id, const Json& json) {
 std::string ProjectName(const std::filesystem::path& model) {
   for (std::filesystem::path path = std::filesystem::absolute(model).lexically_normal(); path.has_relative_path();
        path = path.parent_path()) {
-    const std::string name = path.filename().string();
+    std::string name = path.filename().string();
     const bool digits = name.find_first_not_of("0123456789") == std::string::npos;
     const auto says_nothing = {"sparse", "dense", "colmap", "project"};
     if (!name.empty() && !digits && std::ranges::find(says_nothing, name) == says_nothing.end()) return name;

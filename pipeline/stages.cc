@@ -53,7 +53,7 @@ Ingredients Stages::IngredientsOf(const PlannedStage& stage, const RunSummary& s
 std::string Stages::WhyNotDone(const PlannedStage& stage, const std::optional<StageRecord>& record,
                                const Ingredients& now) {
   if (!record) return "it was not finished before";
-  if (const std::string changes = DescribeChanges(record->ingredients, now); !changes.empty()) return changes;
+  if (std::string changes = DescribeChanges(record->ingredients, now); !changes.empty()) return changes;
   for (const auto& [file, hash] : HashesOf(stage.leaves)) {
     const auto left = record->left.find(file);
     if (left == record->left.end() || left->second != hash) return fmt::format("{} is not as it was left", file);

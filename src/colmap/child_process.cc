@@ -38,7 +38,7 @@ std::vector<std::string> Environment(const std::vector<std::pair<std::string, st
     for (const auto& [name, value] : more) replaced = replaced || text.starts_with(name + "=");
     if (!replaced) environment.emplace_back(text);
   }
-  for (const auto& [name, value] : more) environment.push_back(name + "=" + value);
+  for (const auto& [name, value] : more) environment.emplace_back(name).append("=").append(value);
   return environment;
 }
 
@@ -233,7 +233,7 @@ std::filesystem::path FindProgram(const std::string& name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::filesystem::path file = std::filesystem::path(folder.empty() ? "." : folder) / name;
+    std::filesystem::path file = std::filesystem::path(folder.empty() ? "." : folder) / name;
     if (runnable(file)) return file;
   }
   return {};
