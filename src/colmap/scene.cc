@@ -61,4 +61,10 @@ Scene MakeScene(const Model& model) {
   return scene;
 }
 
+Eigen::Vector3d TowardViews(const Scene& scene, const ScenePoint& point) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Observation& o : point.observations) sum += (scene.views[o.view].Center() - point.position).normalized();
+  return sum;
+}
+
 }  // namespace glint

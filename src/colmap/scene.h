@@ -44,6 +44,9 @@ struct Scene {
   std::vector<ScenePoint> points;
 };
 
+// Sum of the unit directions to the views that observe the point: the side that it is seen from.
+Eigen::Vector3d TowardViews(const Scene& scene, const ScenePoint& point);
+
 // Views sorted by name. Where an image's pixels were dropped (HasZeroedPoints) an observation is the projection of its
 // point, left out if that is outside the image.
 Scene MakeScene(const Model& model);

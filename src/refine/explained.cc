@@ -6,8 +6,6 @@
 namespace glint {
 namespace {
 
-// A contact explains what faces as it does, not what lies around a rim: cosines of 20 and 60 degrees.
-constexpr double kSameSide = 0.94, kOtherSide = 0.5;
 constexpr double kMostRatio2 = 9;  // squared distance, in reaches
 constexpr double kSlack = 1e-9;    // for rounding
 
@@ -31,19 +29,18 @@ Explained::Explained(const std::vector<OrientedPoint>& contacts) : contacts_(con
 double Explained::At(const Eigen::Vector3d& x, const Eigen::Vector3d& normal) const {
   double explained = 0;
   if (normal.isZero()) return explained;
-  const double reach2 = longest_reach_ * longest_reach_, widest = std::acos(kOtherSide);
+  const double reach2 = longest_reach_ * longest_reach_;
   // No contact below the node could say more than what is known already.
   const auto leaves_out = [&](const OrientedTree::Node& node) {
     const double ratio2 = (1 - kSlack) * node.box.squaredExteriorDistance(x) / reach2;
     if (ratio2 > kMostRatio2 || FallOff(ratio2) < (1 - kSlack) * explained) return true;
-    return std::acos(std::clamp(normal.dot(node.axis), -1.0, 1.0)) - node.spread > widest + kSlack;
+    return node.FacesAway(normal);
   };
   tree_.Walk(x, leaves_out, [&](uint32_t i) {
     const OrientedPoint& contact = contacts_[i];
     const double ratio2 = (x - contact.position).squaredNorm() / (contact.reach * contact.reach);
     if (ratio2 > kMostRatio2) return;
-    const double alike = std::clamp((contact.normal.dot(normal) - kOtherSide) / (kSameSide - kOtherSide), 0.0, 1.0);
-    explained = std::max(explained, alike * FallOff(ratio2));
+    explained = std::max(explained, FacingAlike(contact.normal, normal) * FallOff(ratio2));
   });
   return explained;
 }

@@ -10,7 +10,9 @@
 namespace glint {
 namespace {
 
-constexpr size_t kLeaf = 16;  // points, at most
+constexpr size_t kLeaf = 16;                          // points, at most
+constexpr double kSameSide = 0.94, kOtherSide = 0.5;  // cosines of 20 and 60 degrees
+constexpr double kSlack = 1e-9;                       // radians, for rounding
 
 double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -25,6 +27,14 @@ void SetCone(const Cones& cones, OrientedTree::Node& node) {
 }
 
 }  // namespace
+
+double FacingAlike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::clamp((a.dot(b) - kOtherSide) / (kSameSide - kOtherSide), 0.0, 1.0);
+}
+
+bool OrientedTree::Node::FacesAway(const Eigen::Vector3d& normal) const {
+  return std::acos(std::clamp(normal.dot(axis), -1.0, 1.0)) - spread > std::acos(kOtherSide) + kSlack;
+}
 
 std::vector<OrientedTree::Range> OrientedTree::Level(int level) const {
   std::vector<Range> ranges = {{0, 0, order_.size()}};

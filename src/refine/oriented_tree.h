@@ -9,12 +9,19 @@
 
 namespace glint {
 
+// How far a place of one normal speaks for one of the other, not for what lies around a rim or across a wall: 1 up to
+// 20 degrees between them, falling to 0 at 60.
+double FacingAlike(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 class OrientedTree {
  public:
   struct Node {
     Eigen::AlignedBox3d box;
     Eigen::Vector3d axis;  // of a cone around all normals
     double spread;         // radians to the cone's side
+
+    // FacingAlike(normal, any of its normals) is 0.
+    bool FacesAway(const Eigen::Vector3d& normal) const;
   };
 
   // Normals of length 1.

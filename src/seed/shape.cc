@@ -19,10 +19,9 @@ constexpr int kRounds = 3;  // of surface, fairing, and leaving out the points t
 constexpr int kMaxStiffenings = 4;
 // Edges of the smooth seed: about as fine as it is, and others where two sheets touch on those voxels.
 constexpr std::array<double, 3> kMendVoxels = {0.7, 0.5, 1.0};
-constexpr double kLeastMended = 0.5;    // of the sparse surface's volume
-constexpr double kMinTrust = 0.1;       // points that keep less of their weight are left out
-constexpr double kBackSigmaRel = 5e-3;  // of the diagonal: how well the back of a thin wall is
-constexpr double kFootSigmaRel = 5e-3;  // of the diagonal: how well the hidden foot is known
+constexpr double kLeastMended = 0.5;      // of the sparse surface's volume
+constexpr double kMinTrust = 0.1;         // points that keep less of their weight are left out
+constexpr double kHiddenSigmaRel = 5e-3;  // of the diagonal: how well the foot and the back of a thin wall are known
 
 // Many views that agree are hardly wrong; two views agree on any mismatch along their epipolar line.
 Attachment AttachmentOf(const Scene& scene, const PointReliability& reliability, int point) {
@@ -33,15 +32,14 @@ Attachment AttachmentOf(const Scene& scene, const PointReliability& reliability,
 // What the smooth surface should pass: the object's points on the sparse surface, and its foot on the ground.
 std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& surface,
                                     const PointReliability& reliability, const RimEvidence& rim) {
-  const double foot_sigma = kFootSigmaRel * Diagonal(surface.mesh);
+  const double hidden_sigma = kHiddenSigmaRel * Diagonal(surface.mesh);
   std::vector<Attachment> attachments;
   for (size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
     if (surface.scene_point[v] == kMiddleVertex) continue;
-    Attachment a{surface.mesh.vertices[v], foot_sigma, 1, surface.scene_point[v]};
+    Attachment a{surface.mesh.vertices[v], hidden_sigma, 1, surface.scene_point[v]};
     if (const int point = surface.scene_point[v]; point >= 0) {
       a = AttachmentOf(scene, reliability, point);
     } else if (point == kBackVertex) {
-      a.sigma = kBackSigmaRel * Diagonal(surface.mesh);
       a.extra = true;
     } else if (point <= kFirstRimVertex) {
       a.sigma = rim.points[kFirstRimVertex - point].sigma;

@@ -199,10 +199,7 @@ void AddBacks(const Scene& scene, size_t num_object, std::vector<SparseVertex>& 
   const double depth = kWallRel * box.diagonal().norm();
   for (size_t k = 0; k < num_object; ++k) {
     const ScenePoint& point = scene.points[vertices[k].scene_point];
-    Eigen::Vector3d toward = Eigen::Vector3d::Zero();
-    for (const Observation& o : point.observations)
-      toward += (scene.views[o.view].Center() - point.position).normalized();
-    const Eigen::Vector3d away = -toward.normalized();
+    const Eigen::Vector3d away = -TowardViews(scene, point).normalized();
     matter.push_back({static_cast<int>(k), away, depth});
     vertices.push_back({point.position + depth * away, kBackVertex, 0});
   }
@@ -228,7 +225,7 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
     matter.push_back({static_cast<int>(vertices.size()), -rim.points[i].normal, rim.depth});
     vertices.push_back({rim.points[i].position, kFirstRimVertex - static_cast<int>(i), rim.points[i].sigma});
   }
-  SparseCells cells = BuildSparseCells(scene, vertices, context, rim.free_lines, matter);
+  const SparseCells cells = BuildSparseCells(scene, vertices, context, rim.free_lines, matter);
   if (cells.tetrahedra.cells.empty()) return {};
   std::vector<uint8_t> permitted = Permitted(cells, choice);
   if (options.see_through) {

@@ -54,11 +54,8 @@ TriangleMesh Poisson(const Scene& scene, const std::vector<uint8_t>& used) {
   std::vector<Eigen::Vector3d> points, toward;
   for (size_t i = 0; i < scene.points.size(); ++i) {
     if (!used[i]) continue;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Observation& o : scene.points[i].observations)
-      sum += (scene.views[o.view].Center() - scene.points[i].position).normalized();
     points.push_back(scene.points[i].position);
-    toward.push_back(sum);
+    toward.push_back(TowardViews(scene, scene.points[i]));
   }
   return PoissonSurface(points, toward);
 }

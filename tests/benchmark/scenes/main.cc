@@ -63,15 +63,14 @@ void MeasureCase(const Case& c, const Plan& plan, Summary& summary) {
         plan.without ? RunCase(c, plan, {"refine.use_highlights=false", "refine.tilts.use_shading=false"}, without) : 0;
     const double with_s = RunCase(c, plan, {}, with);
     PrintRow(c.name, "seed", MeasureFile(c, with / "seed.ply"), 0);
-    const Measured start = MeasureFile(c, with / "stages" / "start.ply");
-    PrintRow(c.name, "faired seed", start, 0);
-    if (plan.baselines) MeasureBaselines(c, plan);
     Outcome outcome;
+    outcome.start = MeasureFile(c, with / "stages" / "start.ply");
+    PrintRow(c.name, "faired seed", outcome.start, 0);
+    if (plan.baselines) MeasureBaselines(c, plan);
     if (plan.without) {
       outcome.without = MeasureFile(c, without / "mesh.ply");
       PrintRow(c.name, "without", *outcome.without, without_s);
     }
-    outcome.start = start;
     outcome.result = MeasureFile(c, with / "mesh.ply");
     PrintRow(c.name, "glint", outcome.result, with_s);
     TriangleMesh result = ReadMesh(with / "mesh.ply");

@@ -116,9 +116,7 @@ void MeasurePeers(const Case& c, const fs::path& colmap_mesh) {
     if (seed.fate[i] != PointFate::kUsed && seed.fate[i] != PointFate::kObject) continue;
     const ScenePoint& point = c.scene.points[i];
     points.push_back(point.position);
-    Eigen::Vector3d& sum = toward.emplace_back(Eigen::Vector3d::Zero());
-    for (const Observation& o : point.observations)
-      sum += (c.scene.views[o.view].Center() - point.position).normalized();
+    toward.push_back(TowardViews(c.scene, point));
   }
   const std::string label = "{:<10} {:>14} |";
   if (fs::exists(colmap_mesh))
