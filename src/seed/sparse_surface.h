@@ -6,20 +6,14 @@
 #include "seed/object_choice.h"
 #include "seed/reliable_points.h"
 #include "seed/rim_points.h"
+#include "seed/sparse_cells.h"
 #include "seed/visibility_cut.h"
 
 namespace glint {
 
-// What a vertex of the sparse surface is, where it is no point of the scene.
-inline constexpr int kFootVertex = -1;      // on the ground below the object
-inline constexpr int kMiddleVertex = -2;    // in the middle of an edge, where sheets were separated
-inline constexpr int kBackVertex = -3;      // behind a point of a thin wall
-inline constexpr int kFirstRimVertex = -4;  // that of rim point i: kFirstRimVertex - i
-
 struct SparseSurface {
-  TriangleMesh mesh;  // closed, oriented outward, one piece; empty if the points enclose nothing
-  std::vector<int>
-      scene_point;          // per vertex: index into the scene's points, kFootVertex, kMiddleVertex, or a rim point's
+  TriangleMesh mesh;             // closed, oriented outward, one piece; empty if the points enclose nothing
+  std::vector<int> scene_point;  // per vertex: index into the scene's points, or what else it is (seed/sparse_cells.h)
   std::vector<int> beside;  // points of the scene that are no vertices but lie on it: of a hull, which has few vertices
 };
 
