@@ -7,82 +7,19 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 
 #include "core/check.h"
 #include "core/median.h"
 #include "refine/chord_residual.h"
-#include "refine/neighbors.h"
+#include "refine/chords.h"
 
 namespace glint {
-
-void BundleOptions::Visit(OptionVisitor& v) {
-  v.Field({.name = "neighbors", .help = "chords of a contact to its neighbours", .min = 2, .max = 100}, neighbors);
-  v.Field({.name = "max_normal_angle_deg",
-           .help = "no chord between contacts whose normals differ by more",
-           .unit = "deg",
-           .min = 1,
-           .max = 90},
-          max_normal_angle_deg);
-  v.Field({.name = "prior_sigma_rel",
-           .help = "how far the seed may be from the surface; a weak pull that decides only where nothing else does",
-           .unit = "fraction of the diagonal",
-           .min = 1e-4,
-           .max = 1},
-          prior_sigma_rel);
-  v.Field({.name = "point_normal_sigma_deg",
-           .help = "standard deviation of the current surface's normal at a sparse point",
-           .unit = "deg",
-           .min = 0.1,
-           .max = 60},
-          point_normal_sigma_deg);
-  v.Field(
-      {.name = "reject_sigmas",
-       .help = "a contact whose chords contradict its neighbours by more (median, in standard deviations) is left out",
-       .min = 1,
-       .max = 100},
-      reject_sigmas);
-  v.Field({.name = "rounds", .help = "solves with neighbours chosen anew in between", .min = 1, .max = 50}, rounds);
-}
 
 namespace {
 
 constexpr double kRadians = M_PI / 180;
-// Share of the squared angle between two normals that a chord may be off by because curvature changes along it.
-constexpr double kCurvatureChange = 0.1;
-// What of that is left once the current surface's own offset is taken off.
-constexpr double kCorrected = 0.3;
-// How far the surface may be from the middle of a chord: times its sag, and of the diagonal beyond that.
-constexpr double kSagShare = 2, kSheetRel = 0.01, kSheetCosine = 0.5;
 // Above this many contacts the exact covariance gives way to its diagonal approximation.
 constexpr size_t kMaxExactCovariance = 4000;
-
-struct Chord {
-  int a, b;  // b: contact, or point for point chords
-  double sigma;
-  double offset;  // of the current surface, see ChordResidual
-};
-
-// What (m_a + m_b)/|m_a + m_b| · (s_b − s_a) is on the current surface; none where its normals are not to be relied on.
-std::optional<double> SurfaceOffset(const Eigen::Vector3d& s_a, const Eigen::Vector3d& m_a, const Eigen::Vector3d& s_b,
-                                    const Eigen::Vector3d& m_b) {
-  if (m_a.isZero() || m_b.isZero()) return std::nullopt;
-  return (m_a + m_b).normalized().dot(s_b - s_a);
-}
-
-// Whether the surface follows the chord between two places on it with these normals, as far as its bend lets it: a
-// chord of length c whose normals differ by θ sags by cθ/8, and the normals on the way lie between them.
-bool OnOneSheet(const SurfaceQuery& surface, const Eigen::Vector3d& a, const Eigen::Vector3d& normal_a,
-                const Eigen::Vector3d& b, const Eigen::Vector3d& normal_b, double diagonal) {
-  const double angle = std::acos(std::clamp(normal_a.dot(normal_b), -1.0, 1.0));
-  const double reach = kSagShare * (b - a).norm() * angle / 8 + kSheetRel * diagonal;
-  const Eigen::Vector3d mean_normal = (normal_a + normal_b).normalized();
-  for (const double t : {0.25, 0.5, 0.75}) {
-    const auto near = surface.closest.Find(a + t * (b - a), reach);
-    if (!near || FaceNormal(surface.mesh, near->face).dot(mean_normal) < kSheetCosine) return false;
-  }
-  return true;
-}
 
 class Solver {
  public:
@@ -102,31 +39,25 @@ class Solver {
 
   BundleSummary Run() {
     BundleSummary summary;
+    const std::vector<Contact*> all = contacts_;
     std::vector<Eigen::Vector3d> start;
-    for (const Contact* c : contacts_) start.push_back(c->Position());
+    for (const Contact* c : all) start.push_back(c->Position());
     for (int round = 0; round < options_.rounds && contacts_.size() >= 3; ++round) {
-      BuildChords();
+      chords_ = MakeChords(contacts_, lights_, points_, diagonal_, options_, surface_);
       Solve(round == 0, summary);
       if (!summary.usable) break;
       if (round + 1 < options_.rounds) summary.num_rejected += Reject();
     }
-    if (contacts_.size() < 3) chords_.clear(), point_chords_.clear();
+    if (contacts_.size() < 3) chords_ = {};
     Finish(summary);
     std::vector<double> motion;
-    // Contacts rejected on the way do not count; `start` is matched by walking the survivors in order.
-    for (size_t i = 0, k = 0; i < start_order_.size() && k < contacts_.size(); ++i) {
-      if (start_order_[i] != contacts_[k]) continue;
-      motion.push_back((contacts_[k]->Position() - start[i]).norm() / diagonal_);
-      ++k;
-    }
+    for (size_t i = 0; i < all.size(); ++i)
+      if (all[i]->accepted) motion.push_back((all[i]->Position() - start[i]).norm() / diagonal_);
     summary.motion_rel = Median(motion);
     return summary;
   }
 
-  void RememberOrder() { start_order_.assign(contacts_.begin(), contacts_.end()); }
-
  private:
-  void BuildChords();
   void Solve(bool first, BundleSummary& summary);
   int Reject();
   void Finish(BundleSummary& summary);
@@ -143,74 +74,8 @@ class Solver {
   const std::vector<Light> given_lights_;
   const SurfaceQuery* const surface_;
   std::vector<Contact*> contacts_;
-  std::vector<const Contact*> start_order_;
-  std::vector<Chord> chords_, point_chords_;
+  Chords chords_;
 };
-
-void Solver::BuildChords() {
-  std::vector<Eigen::Vector3d> positions, normals, point_positions, point_normals;
-  for (const Contact* c : contacts_) {
-    positions.push_back(c->Position());
-    normals.push_back(ContactNormal(*c, lights_[c->light]));
-  }
-  for (const SurfacePoint& p : points_) {
-    point_positions.push_back(p.position);
-    point_normals.push_back(p.normal);
-  }
-  NeighborOptions near;
-  near.count = options_.neighbors;
-  near.max_normal_angle = options_.max_normal_angle_deg * kRadians;
-  auto pairs = UniquePairs(SectorNeighbors(positions, normals, positions, normals, near));
-  if (surface_)
-    std::erase_if(pairs, [&](const auto& pair) {
-      const auto& [i, j] = pair;
-      return !OnOneSheet(*surface_, contacts_[i]->SurfacePosition(), normals[i], contacts_[j]->SurfacePosition(),
-                         normals[j], diagonal_);
-    });
-  // The peak's uncertainty in the image becomes one of the normal through the curvature that the chords show.
-  std::vector<std::vector<double>> curvatures(contacts_.size());
-  for (const auto& [i, j] : pairs) {
-    const double angle = std::acos(std::clamp(normals[i].dot(normals[j]), -1.0, 1.0));
-    const double curvature = angle / std::max((positions[i] - positions[j]).norm(), 1e-6 * diagonal_);
-    curvatures[i].push_back(curvature);
-    curvatures[j].push_back(curvature);
-  }
-  std::vector<double> variance(contacts_.size());
-  for (size_t i = 0; i < contacts_.size(); ++i) {
-    const double shift = contacts_[i]->pixel_angle * contacts_[i]->depth * Median(curvatures[i]);
-    variance[i] = contacts_[i]->sigma_normal * contacts_[i]->sigma_normal + shift * shift;
-  }
-  // Each normal enters about `neighbors` chords; the factor keeps the covariance honest.
-  const double shared = std::sqrt(options_.neighbors / 3.0);
-  chords_.clear();
-  for (const auto& [i, j] : pairs) {
-    const double length = (positions[i] - positions[j]).norm();
-    const double angle2 = 2 * (1 - std::clamp(normals[i].dot(normals[j]), -1.0, 1.0));
-    const auto offset = SurfaceOffset(contacts_[i]->SurfacePosition(), contacts_[i]->surface_normal,
-                                      contacts_[j]->SurfacePosition(), contacts_[j]->surface_normal);
-    const double model = (offset ? kCorrected : 1.0) * kCurvatureChange * angle2;
-    const double sigma = length * std::sqrt((variance[i] + variance[j]) / 4 * shared * shared + model * model);
-    chords_.push_back({i, j, std::max(sigma, 1e-5 * diagonal_), offset.value_or(0)});
-  }
-  point_chords_.clear();
-  if (points_.empty()) return;
-  near.count = 6;
-  const auto near_points = SectorNeighbors(positions, normals, point_positions, point_normals, near);
-  for (size_t i = 0; i < near_points.size(); ++i)
-    for (int p : near_points[i]) {
-      if (surface_ && !OnOneSheet(*surface_, contacts_[i]->SurfacePosition(), normals[i], points_[p].surface_position,
-                                  points_[p].normal, diagonal_))
-        continue;
-      const double length = (positions[i] - points_[p].position).norm();
-      const double angle2 = 2 * (1 - std::clamp(normals[i].dot(points_[p].normal), -1.0, 1.0));
-      const auto offset = SurfaceOffset(contacts_[i]->SurfacePosition(), contacts_[i]->surface_normal,
-                                        points_[p].surface_position, points_[p].normal);
-      const double model = (offset ? kCorrected : 1.0) * kCurvatureChange * angle2;
-      const double direction = std::hypot(0.5 * options_.point_normal_sigma_deg * kRadians, model);
-      point_chords_.push_back(
-          {static_cast<int>(i), p, std::hypot(length * direction, points_[p].sigma), offset.value_or(0)});
-    }
-}
 
 double Solver::ChordResidualOf(const Chord& chord) const {
   const Contact &a = *contacts_[chord.a], &b = *contacts_[chord.b];
@@ -236,7 +101,7 @@ void Solver::AddResiduals(ceres::Problem& problem) {
     if (lights_[k].type == LightType::kDistant) problem.SetManifold(light, new ceres::SphereManifold<3>());
     if (!solve_lights_[k]) problem.SetParameterBlockConstant(light);
   }
-  for (const Chord& chord : chords_) {
+  for (const Chord& chord : chords_.between) {
     Contact &a = *contacts_[chord.a], &b = *contacts_[chord.b];
     auto* residual = new ChordResidual{{a, lights_[a.light]}, {b, lights_[b.light]}, 1 / chord.sigma, chord.offset};
     double *light_a = lights_[a.light].vector.data(), *light_b = lights_[b.light].vector.data();
@@ -247,7 +112,7 @@ void Solver::AddResiduals(ceres::Problem& problem) {
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ChordResidual, 1, 1, 1, 3, 3>(residual),
                                new ceres::CauchyLoss(2), &a.depth, &b.depth, light_a, light_b);
   }
-  for (const Chord& chord : point_chords_) {
+  for (const Chord& chord : chords_.to_points) {
     Contact& a = *contacts_[chord.a];
     const SurfacePoint& p = points_[chord.b];
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointChordResidual, 1, 1, 3>(new PointChordResidual{
@@ -327,17 +192,17 @@ void Solver::EstimateCovariance(ceres::Problem& problem, BundleSummary& summary)
 // Leaves out contacts that most of their chords contradict while the neighbours agree among themselves.
 int Solver::Reject() {
   std::vector<std::vector<double>> residuals(contacts_.size());
-  for (const Chord& chord : chords_) {
+  for (const Chord& chord : chords_.between) {
     const double r = std::abs(ChordResidualOf(chord));
     residuals[chord.a].push_back(r);
     residuals[chord.b].push_back(r);
   }
-  for (const Chord& chord : point_chords_) residuals[chord.a].push_back(std::abs(PointChordResidualOf(chord)));
+  for (const Chord& chord : chords_.to_points) residuals[chord.a].push_back(std::abs(PointChordResidualOf(chord)));
   std::vector<double> score(contacts_.size());
   for (size_t i = 0; i < contacts_.size(); ++i) score[i] = Median(residuals[i]);
   // Only the worst of each neighbourhood goes, the others are judged again without it.
   std::vector<bool> worst(contacts_.size(), true);
-  for (const Chord& chord : chords_) {
+  for (const Chord& chord : chords_.between) {
     if (score[chord.a] < score[chord.b]) worst[chord.a] = false;
     if (score[chord.b] < score[chord.a]) worst[chord.b] = false;
   }
@@ -356,16 +221,16 @@ int Solver::Reject() {
 
 void Solver::Finish(BundleSummary& summary) {
   summary.num_contacts = static_cast<int>(contacts_.size());
-  summary.num_chords = static_cast<int>(chords_.size());
-  summary.num_point_chords = static_cast<int>(point_chords_.size());
+  summary.num_chords = static_cast<int>(chords_.between.size());
+  summary.num_point_chords = static_cast<int>(chords_.to_points.size());
   summary.lights.resize(lights_.size());
   for (const Contact* c : contacts_) ++summary.lights[c->light].contacts;
   double sum = 0;
-  for (const Chord& chord : chords_) {
+  for (const Chord& chord : chords_.between) {
     const double r = ChordResidualOf(chord);
     sum += r * r / (1 + r * r / 4);  // as the loss weighs it
   }
-  summary.chord_rms_sigmas = chords_.empty() ? 0 : std::sqrt(sum / chords_.size());
+  summary.chord_rms_sigmas = chords_.between.empty() ? 0 : std::sqrt(sum / static_cast<double>(chords_.between.size()));
   for (size_t k = 0; k < lights_.size(); ++k) {
     const Eigen::Vector3d &before = given_lights_[k].vector, &after = lights_[k].vector;
     summary.lights[k].change = lights_[k].type == LightType::kDistant
@@ -384,10 +249,9 @@ BundleSummary SolveBundle(const std::vector<SurfacePoint>& points, double diagon
   GLINT_CHECK(!known_lights || known_lights->size() == lights.size());
   GLINT_CHECK_GT(diagonal, 0);
   for (const Contact& contact : contacts) GLINT_CHECK_LT(contact.light, static_cast<int>(lights.size()));
-  Solver solver(points, diagonal, solve_lights, options, contacts, lights, known_lights ? *known_lights : lights,
-                surface);
-  solver.RememberOrder();
-  return solver.Run();
+  return Solver(points, diagonal, solve_lights, options, contacts, lights, known_lights ? *known_lights : lights,
+                surface)
+      .Run();
 }
 
 }  // namespace glint
