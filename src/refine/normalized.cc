@@ -39,8 +39,8 @@ Contact Scaled(Contact contact, const Eigen::Vector3d& origin, double factor) {
 
 }  // namespace
 
-Contact UnitFrame::FromWorld(Contact contact) const { return Scaled(contact, FromWorld(contact.origin), scale); }
-Contact UnitFrame::ToWorld(Contact contact) const { return Scaled(contact, ToWorld(contact.origin), 1 / scale); }
+Contact UnitFrame::FromWorld(const Contact& contact) const { return Scaled(contact, FromWorld(contact.origin), scale); }
+Contact UnitFrame::ToWorld(const Contact& contact) const { return Scaled(contact, ToWorld(contact.origin), 1 / scale); }
 
 Light UnitFrame::FromWorld(Light light) const {
   if (light.type != LightType::kPoint) return light;

@@ -21,8 +21,8 @@ struct UnitFrame {
 
   TriangleMesh FromWorld(TriangleMesh mesh) const;
   TriangleMesh ToWorld(TriangleMesh mesh) const;
-  Contact FromWorld(Contact contact) const;
-  Contact ToWorld(Contact contact) const;
+  Contact FromWorld(const Contact& contact) const;
+  Contact ToWorld(const Contact& contact) const;
   Light FromWorld(Light light) const;
   Light ToWorld(Light light) const;
 };

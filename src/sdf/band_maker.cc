@@ -75,7 +75,7 @@ openvdb::FloatGrid::Ptr BandMaker::ByPseudoNormals() const {
   BandOptions band = band_;
   band.exact = &exact;
   band.signer = &signer;
-  const openvdb::FloatGrid::Ptr grid = MakeGrid(band);
+  openvdb::FloatGrid::Ptr grid = MakeGrid(band);
   FillTiles(*grid);
   return grid;
 }
@@ -84,7 +84,7 @@ openvdb::FloatGrid::Ptr BandMaker::ByWinding() const {
   const WindingSigner signer(prepared_.mesh, prepared_.balanced, band_.half_width_voxels);
   BandOptions band = band_;
   band.signer = &signer;
-  const openvdb::FloatGrid::Ptr grid = MakeGrid(band);
+  openvdb::FloatGrid::Ptr grid = MakeGrid(band);
   if (prepared_.balanced) {
     FillTiles(*grid);
   } else {
