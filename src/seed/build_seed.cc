@@ -103,7 +103,8 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   std::vector<Eigen::Vector3d> points;
   for (size_t i = 0; i < choice.role.size(); ++i)
     if (choice.role[i] == PointRole::kObject) points.push_back(scene.points[i].position);
-  const RimEvidence rim = RimFromOutline(scene, outline, points, Diagonal(made.shape.smooth), found.source == "masks");
+  RimEvidence rim = RimFromOutline(scene, outline, points, Diagonal(made.shape.smooth), found.source == "masks");
+  rim.of_a_wall = points_alone.shape.sparse.is_wall;
   Made with{{}, points_alone.reliability, points_alone.choice};
   with.shape = MakeShape(scene, with.reliability, with.choice, rim, options.surface, options.smooth, progress);
   s.outline_fit_before = OutlineFit(scene, outline, points_alone.shape.smooth);

@@ -24,6 +24,7 @@ struct RimEvidence {
   std::vector<RimPoint> points;
   std::vector<FreeLine> free_lines;  // rays that pass just outside of the object
   double depth = 0;                  // world units: matter this far behind every rim point
+  bool of_a_wall = false;            // the points alone made sense as a thin wall only
 };
 
 // Places of samples that are known well along their rays, averaged over their neighbours, thinned, where `points` (the

@@ -22,6 +22,7 @@ constexpr std::array<double, 3> kMendVoxels = {0.7, 0.5, 1.0};
 constexpr double kLeastMended = 0.5;      // of the sparse surface's volume
 constexpr double kMinTrust = 0.1;         // points that keep less of their weight are left out
 constexpr double kHiddenSigmaRel = 5e-3;  // of the diagonal: how well the foot and the back of a thin wall are known
+constexpr double kBackSigmaRel = 0.02;    // the back, where outlines say more: how thick the wall is nobody has seen
 
 // Many views that agree are hardly wrong; two views agree on any mismatch along their epipolar line.
 Attachment AttachmentOf(const Scene& scene, const PointReliability& reliability, int point) {
@@ -40,6 +41,7 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
     if (const int point = surface.scene_point[v]; point >= 0) {
       a = AttachmentOf(scene, reliability, point);
     } else if (point == kBackVertex) {
+      if (!rim.points.empty()) a.sigma = kBackSigmaRel * Diagonal(surface.mesh);
       a.extra = true;
     } else if (point <= kFirstRimVertex) {
       a.sigma = rim.points[kFirstRimVertex - point].sigma;

@@ -109,13 +109,15 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
   if (cells.tetrahedra.cells.empty()) return {};
   if (options.see_through) return Hull(scene, choice, cells);
   const Solid solid = BestSolid(cells, choice, options, num_points, views);
-  if (solid.explained - solid.hidden >= kPoor * num_points) return SurfaceOf(cells, solid.labels);
+  if (!rim.of_a_wall && solid.explained - solid.hidden >= kPoor * num_points) return SurfaceOf(cells, solid.labels);
   // It is torn, or fills what many looked into: a bowl of whose outside little is known. As a wall?
   AddBacks(scene, known);
   const SparseCells walled = triangulate();
   const Solid wall = BestSolid(walled, choice, options, num_points, views);
-  const bool better = wall.explained - wall.hidden >= kEnoughOfAWall * num_points;
-  return better ? SurfaceOf(walled, wall.labels) : SurfaceOf(cells, solid.labels);
+  if (wall.explained - wall.hidden < kEnoughOfAWall * num_points) return SurfaceOf(cells, solid.labels);
+  SparseSurface out = SurfaceOf(walled, wall.labels);
+  out.is_wall = true;
+  return out;
 }
 
 }  // namespace glint

@@ -14,6 +14,7 @@ namespace glint {
 struct SparseSurface {
   TriangleMesh mesh;             // closed, oriented outward, one piece; empty if the points enclose nothing
   std::vector<int> scene_point;  // per vertex: index into the scene's points, or what else it is (seed/sparse_cells.h)
+  bool is_wall = false;          // made with a back behind every point
   std::vector<int> beside;  // points of the scene that are no vertices but lie on it: of a hull, which has few vertices
 };
 

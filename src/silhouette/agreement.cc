@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 namespace glint::internal {
 namespace {
@@ -11,28 +12,44 @@ constexpr int kSteps = 40;  // through the ball
 constexpr int kFinerSteps = 8;
 constexpr int kMaxContradictions = 8;
 
-}  // namespace
-
-std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Eigen::Vector3d& x, int skip) {
-  const std::vector<ViewMask>& masks = set.masks;
-  std::array<double, kMaxContradictions> worst;
-  worst.fill(-kFar);
-  const int count = std::clamp(set.contradictions, 1, kMaxContradictions);
-  int witnesses = 0;
+// By how much each mask (but `skip`) that knows of x has it outside, world units.
+template <class Visit>
+void ForWitnesses(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x, int skip,
+                  const Visit& visit) {
   for (int m = 0; m < static_cast<int>(masks.size()); ++m) {
     if (m == skip) continue;
     const View& view = scene.views[masks[m].view];
     const auto px = view.Project(x);
     if (!px) continue;
     const auto distance_px = masks[m].DistanceAt(view, *px);
-    if (!distance_px) continue;
+    if (distance_px) visit(*distance_px * (x - masks[m].eye).norm() / masks[m].focal_px);
+  }
+}
+
+}  // namespace
+
+std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Eigen::Vector3d& x, int skip) {
+  std::array<double, kMaxContradictions> worst;
+  worst.fill(-kFar);
+  const int count = std::clamp(set.contradictions, 1, kMaxContradictions);
+  int witnesses = 0;
+  ForWitnesses(scene, set.masks, x, skip, [&](double d) {
     ++witnesses;
-    double d = *distance_px * (x - masks[m].eye).norm() / masks[m].focal_px;
     for (int k = 0; k < count; ++k)
       if (d > worst[k]) std::swap(d, worst[k]);
-  }
+  });
   if (witnesses < kMinWitnesses) return std::nullopt;
   return worst[count - 1];
+}
+
+std::optional<double> OutsideByMost(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x,
+                                    double wrong_share) {
+  std::vector<double> distances;
+  ForWitnesses(scene, masks, x, -1, [&](double d) { distances.push_back(d); });
+  if (2 * distances.size() < masks.size()) return std::nullopt;
+  const auto wrong = static_cast<size_t>(wrong_share * static_cast<double>(distances.size()));
+  std::nth_element(distances.begin(), distances.begin() + wrong, distances.end(), std::greater<>());
+  return distances[wrong];
 }
 
 std::optional<double> FindContact(const Scene& scene, const MaskSet& set, int own, const Reach& reach, double slack,

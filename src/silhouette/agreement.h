@@ -24,6 +24,10 @@ struct MaskSet {
 // By how much x is outside of what the masks (but `skip`) leave room for, world units.
 std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Eigen::Vector3d& x, int skip = -1);
 
+// The same, but for the share of the masks that may be wrong; nothing where fewer than half of them know of x.
+std::optional<double> OutsideByMost(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x,
+                                    double wrong_share);
+
 // A ball that holds the object with room to spare.
 struct Reach {
   Eigen::Vector3d center;

@@ -12,9 +12,10 @@
 namespace glint::internal {
 namespace {
 
-constexpr int kMaxSide = 320;       // px of the raster
-constexpr double kMargin = 0.35;    // of the projection's larger side
-constexpr double kReachRel = 0.15;  // of the diagonal: how far outside of the rough mesh the object may be
+constexpr int kMaxSide = 320;               // px of the raster
+constexpr double kMargin = 0.35;            // of the projection's larger side
+constexpr double kReachRel = 0.15;          // of the diagonal: how far outside of the rough mesh the object may be
+constexpr double kReachFromHullRel = 0.05;  // outside of what other views leave room for
 constexpr double kClippedPx = 2;
 constexpr double kCoreRel = 0.05;      // and inside of it from where on it is for sure
 constexpr double kStep = 2;            // px between samples
@@ -83,40 +84,47 @@ cv::Mat Hints(const Work& work, size_t view, const Raster& raster) {
 std::optional<Candidate> FromMask(const Work& work, size_t view) {
   cv::Mat mask;
   if (!work.images.LoadMask(view, mask)) return std::nullopt;
-  const auto projection = ProjectMesh(work.scene.views[view], work.rough.mesh, kMargin, kMaxSide);
-  if (!projection) return std::nullopt;
-  const Raster& raster = projection->raster;
+  const auto raster = RasterAround(work.scene.views[view], work.rough.mesh, kMargin, kMaxSide);
+  if (!raster) return std::nullopt;
   cv::Mat small;
-  cv::resize(mask(raster.window), small, raster.size, 0, 0, cv::INTER_AREA);
+  cv::resize(mask(raster->window), small, raster->size, 0, 0, cv::INTER_AREA);
   small = small > 127;
   Candidate out;
   const double elsewhere =
-      (cv::countNonZero(mask) - cv::countNonZero(mask(raster.window))) * raster.scale * raster.scale;
-  out.overlap = Overlap(small, projection->distance < 0, elsewhere);
-  out.sigma_px = kMaskSigmaPx * std::max(1.0, raster.scale);
-  Finish(work, view, raster, small, out);
+      (cv::countNonZero(mask) - cv::countNonZero(mask(raster->window))) * raster->scale * raster->scale;
+  out.overlap = Overlap(small, ProjectedDistance(work.scene.views[view], work.rough.mesh, *raster) < 0, elsewhere);
+  out.sigma_px = kMaskSigmaPx * std::max(1.0, raster->scale);
+  Finish(work, view, *raster, small, out);
   return out;
 }
 
-std::optional<Candidate> FromPhotograph(const Work& work, size_t view) {
-  const auto projection = ProjectMesh(work.scene.views[view], work.rough.mesh, kMargin, kMaxSide);
+std::optional<Candidate> FromPhotograph(const Work& work, size_t view, const TriangleMesh* hull) {
+  const auto found_raster = RasterAround(work.scene.views[view], hull ? *hull : work.rough.mesh, kMargin, kMaxSide);
   cv::Mat image;
-  if (!projection || !work.images.Load(view, image)) return std::nullopt;
-  const Raster& raster = projection->raster;
+  if (!found_raster || !work.images.Load(view, image)) return std::nullopt;
+  const Raster& raster = *found_raster;
   cv::Mat window = image(raster.window), small;
   if (window.depth() == CV_16U) window.convertTo(window, CV_8U, 1.0 / 257);
   cv::resize(window, small, raster.size, 0, 0, cv::INTER_AREA);
   const double size = work.DiagonalPx(view, raster);
-  const double reach = std::max(3.0, kReachRel * size), core = std::max(2.0, kCoreRel * size);
-  const cv::Mat mask = WithoutIslands(Segment({small, projection->distance, Hints(work, view, raster), reach, core}),
-                                      projection->distance < -core);
+  const double reach = std::max(3.0, (hull ? kReachFromHullRel : kReachRel) * size);
+  const double core = std::max(2.0, kCoreRel * size);
+  const cv::Mat rough = ProjectedDistance(work.scene.views[view], work.rough.mesh, raster);
+  cv::Mat expected = rough;
+  if (hull) {
+    // The hull says where the object may be, the rough mesh where it is.
+    const cv::Mat room = cv::max(ProjectedDistance(work.scene.views[view], *hull, raster), 0.F);
+    expected = cv::min(rough, room);
+  }
+  const cv::Mat mask =
+      WithoutIslands(Segment({small, expected, Hints(work, view, raster), reach, core}), expected < -core);
   Candidate out;
-  out.overlap = Overlap(mask, projection->distance < 0, 0);
+  out.overlap = Overlap(mask, rough < 0, 0);
   out.sigma_px = kFoundSigmaPx;
   out.found = true;
   Finish(work, view, raster, mask, out);
   out.contour = OnEdges(small, out.contour);
-  ForgetBeyond(mask, projection->distance > reach - kClippedPx, out.mask.distance);
+  ForgetBeyond(mask, expected > reach - kClippedPx, out.mask.distance);
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "colmap/scene.h"
 #include "io/image_source.h"
+#include "silhouette/agreement.h"
 #include "silhouette/silhouettes.h"
 #include "silhouette/view_mask.h"
 
@@ -28,6 +29,8 @@ struct Work {
   double diagonal;
   Eigen::Vector3d center;
 
+  // Around the object, with room to spare.
+  Reach Ball() const { return {center, 0.75 * diagonal}; }
   double RasterFocal(size_t view, const internal::Raster& raster) const {
     return MeanFocalLength(scene.views[view].camera) * raster.scale;
   }
@@ -39,7 +42,8 @@ struct Work {
 // Nothing where there is no mask, or the rough mesh is not in the image.
 std::optional<Candidate> FromMask(const Work& work, size_t view);
 
-// Nothing where there is no photograph, or the rough mesh is not in it.
-std::optional<Candidate> FromPhotograph(const Work& work, size_t view);
+// Nothing where there is no photograph, or the rough mesh is not in it. `hull`: what other views leave room for; null:
+// not known.
+std::optional<Candidate> FromPhotograph(const Work& work, size_t view, const TriangleMesh* hull);
 
 }  // namespace glint::internal

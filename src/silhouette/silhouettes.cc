@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "silhouette/agreement.h"
 #include "silhouette/candidates.h"
+#include "silhouette/hull.h"
 #include "silhouette/support.h"
 
 namespace glint {
@@ -33,6 +34,7 @@ constexpr double kSlackRel = 0.004;   // see FindContact
 constexpr double kMinShare = 0.4;     // of its samples that a view must have confirmed
 constexpr size_t kMinViews = 4;
 constexpr int kMaxRounds = 4;
+constexpr int kHullRounds = 3;       // of outlines looked for in the photographs, each around what the last ones leave
 constexpr double kBesideRel = 0.03;  // of the diagonal: of another view's sample that supports one
 constexpr double kGroundRel = 0.02;  // of the diagonal: lower than this an outline may be a shadow's
 
@@ -68,7 +70,7 @@ struct Judged {
 // What the other views say of one's outline.
 Judged Judge(const Work& work, const internal::MaskSet& set, int own, const Candidate& candidate) {
   Judged out;
-  const internal::Reach reach{work.center, 0.75 * work.diagonal};
+  const internal::Reach reach = work.Ball();
   for (const ContourPoint& p : candidate.contour) {
     std::optional<OutlineSample> s = RayOf(work, set.masks[own], p);
     if (!s) continue;
@@ -145,6 +147,38 @@ bool ShowTheObject(const std::vector<Candidate>& candidates) {
   return candidates.size() >= kMinViews && 2 * static_cast<size_t>(good) > candidates.size();
 }
 
+// Whether the views confirm each other; only then are there an outline and masks.
+bool Confirm(const Work& work, std::vector<Candidate> candidates, internal::MaskSet& masks,
+             std::vector<OutlineSample>& outline, SilhouetteSummary& s, Progress& progress) {
+  const bool found = s.source == "photographs";
+  outline.clear();
+  masks.masks.clear();
+  s.num_views = candidates.size();
+  s.num_trusted_views = s.num_samples = s.num_trusted_samples = 0;
+  // A mask is wrong here and there if it was found; a given one as a whole or not at all.
+  masks.contradictions = found ? 2 + static_cast<int>(candidates.size() / 32) : 2;
+  if (candidates.size() < kMinViews) return false;
+  KeepWhatAgrees(work, candidates, masks, outline, s, progress);
+  const bool most_views = s.num_trusted_views >= kMinViews && 2 * s.num_trusted_views >= s.num_views;
+  if (most_views && found) outline = Supported(work, outline);
+  // Else most of what was found is wrong.
+  const bool most_places = !found || 2 * outline.size() >= s.num_samples;
+  if (!most_views || !most_places) {
+    outline.clear();
+    masks.masks.clear();
+  }
+  s.num_trusted_samples = outline.size();
+  return !outline.empty();
+}
+
+// What most of the masks leave room for: where the rough mesh lacks a part of the object, or a mask of it, the others
+// have it, so that outlines can be looked for nearer to where they are.
+TriangleMesh HullOf(const Work& work, const std::vector<Candidate>& candidates) {
+  std::vector<ViewMask> masks;
+  for (const Candidate& c : candidates) masks.push_back(c.mask);
+  return internal::HullOfMost(work.scene, masks, work.Ball(), work.rough.ground);
+}
+
 }  // namespace
 
 void SilhouetteOptions::Visit(OptionVisitor& v) {
@@ -187,28 +221,19 @@ Silhouettes FindSilhouettes(const Scene& scene, const ImageSource& images, const
   const std::vector<size_t> views = ChosenViews(scene.views.size(), static_cast<size_t>(options.max_views));
   std::vector<Candidate> candidates = Collect(views, progress, [&](size_t v) { return internal::FromMask(work, v); });
   s.source = "masks";
-  if (!ShowTheObject(candidates)) {
-    candidates.clear();
-    s.source = "";
-    if (options.use == "masks") return out;
-    s.source = "photographs";
-    candidates = Collect(views, progress, [&](size_t v) { return internal::FromPhotograph(work, v); });
+  if (ShowTheObject(candidates)) {
+    Confirm(work, std::move(candidates), out.impl_->masks, out.impl_->outline, s, progress);
+    return out;
   }
-  s.num_views = candidates.size();
-  // A mask is wrong here and there if it was found; a given one as a whole or not at all.
-  out.impl_->masks.contradictions = s.source == "masks" ? 2 : 2 + static_cast<int>(candidates.size() / 32);
-  if (candidates.size() < kMinViews) return out;
-  KeepWhatAgrees(work, candidates, out.impl_->masks, out.impl_->outline, s, progress);
-  if (s.num_trusted_views < kMinViews || 2 * s.num_trusted_views < s.num_views) {
-    out.impl_->outline.clear();
-    out.impl_->masks.masks.clear();
-  }
-  if (s.source == "photographs") out.impl_->outline = Supported(work, out.impl_->outline);
-  s.num_trusted_samples = out.impl_->outline.size();
-  if (s.source == "photographs" && 2 * s.num_trusted_samples < s.num_samples) {  // most of what was found is wrong
-    out.impl_->outline.clear();
-    out.impl_->masks.masks.clear();
-    s.num_trusted_samples = 0;
+  s.source = "";
+  if (options.use == "masks") return out;
+  s.source = "photographs";
+  std::optional<TriangleMesh> hull;
+  for (int round = 0; round < kHullRounds && (!hull || !hull->empty()); ++round) {
+    candidates =
+        Collect(views, progress, [&](size_t v) { return internal::FromPhotograph(work, v, hull ? &*hull : nullptr); });
+    if (Confirm(work, candidates, out.impl_->masks, out.impl_->outline, s, progress)) break;
+    hull = HullOf(work, candidates);
   }
   return out;
 }

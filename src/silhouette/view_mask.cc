@@ -61,11 +61,10 @@ cv::Mat SignedDistance(const cv::Mat& mask) {
   return distance;
 }
 
-std::optional<Projection> ProjectMesh(const View& view, const TriangleMesh& mesh, double margin, int max_side) {
-  const std::vector<std::optional<Eigen::Vector2d>> at = Projected(view, mesh);
+std::optional<Raster> RasterAround(const View& view, const TriangleMesh& mesh, double margin, int max_side) {
   const int width = static_cast<int>(view.camera.width), height = static_cast<int>(view.camera.height);
   Eigen::AlignedBox2d box;
-  for (const auto& px : at)
+  for (const auto& px : Projected(view, mesh))
     if (px) box.extend(px->cwiseMax(Eigen::Vector2d::Zero()).cwiseMin(Eigen::Vector2d(width, height)));
   if (box.isEmpty() || box.sizes().minCoeff() < 4) return std::nullopt;
   const double extra = margin * box.sizes().maxCoeff();
@@ -73,12 +72,16 @@ std::optional<Projection> ProjectMesh(const View& view, const TriangleMesh& mesh
                       std::max(0, static_cast<int>(box.min().y() - extra)));
   const cv::Point high(std::min(width, static_cast<int>(box.max().x() + extra) + 1),
                        std::min(height, static_cast<int>(box.max().y() + extra) + 1));
-  Projection out;
-  Raster& raster = out.raster;
+  Raster raster;
   raster.window = cv::Rect(low, high);
   raster.scale = std::min(1.0, static_cast<double>(max_side) / std::max(raster.window.width, raster.window.height));
   raster.size = cv::Size(std::max(1, static_cast<int>(std::lround(raster.window.width * raster.scale))),
                          std::max(1, static_cast<int>(std::lround(raster.window.height * raster.scale))));
+  return raster;
+}
+
+cv::Mat ProjectedDistance(const View& view, const TriangleMesh& mesh, const Raster& raster) {
+  const std::vector<std::optional<Eigen::Vector2d>> at = Projected(view, mesh);
   cv::Mat mask(raster.size, CV_8U, cv::Scalar(0));
   const double far = 16.0 * (raster.size.width + raster.size.height);
   for (const Eigen::Vector3i& f : mesh.faces) {
@@ -95,8 +98,7 @@ std::optional<Projection> ProjectMesh(const View& view, const TriangleMesh& mesh
     }
     if (seen) cv::fillConvexPoly(mask, corner.data(), 3, cv::Scalar(255), cv::LINE_8, kShift);
   }
-  out.distance = SignedDistance(mask);
-  return out;
+  return SignedDistance(mask);
 }
 
 std::optional<double> ViewMask::DistanceAt(const View& in, const Eigen::Vector2d& px) const {

@@ -32,12 +32,12 @@ struct Raster {
 inline constexpr float kFar = 1e6f;
 cv::Mat SignedDistance(const cv::Mat& mask);
 
-// The mesh's projection. Nothing if it is not in the image.
-struct Projection {
-  Raster raster;     // around it with `margin` of its larger side, at most `max_side` px
-  cv::Mat distance;  // CV_32F, signed
-};
-std::optional<Projection> ProjectMesh(const View& view, const TriangleMesh& mesh, double margin, int max_side);
+// Around the mesh's projection with `margin` of its larger side, at most `max_side` px. Nothing if it is not in the
+// image.
+std::optional<Raster> RasterAround(const View& view, const TriangleMesh& mesh, double margin, int max_side);
+
+// SignedDistance() of the mesh's projection.
+cv::Mat ProjectedDistance(const View& view, const TriangleMesh& mesh, const Raster& raster);
 
 // A mask that is used: signed distance from its outline in raster px.
 struct ViewMask {

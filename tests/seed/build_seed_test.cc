@@ -13,6 +13,7 @@
 #include "geometry/mesh_checks.h"
 #include "geometry/pseudo_normals.h"
 #include "seed/scene_layout.h"
+#include "seed/sparse_surface.h"
 #include "simulated_scene.h"
 
 namespace glint {
@@ -209,32 +210,62 @@ TEST(BuildSeed, AFlatObjectIsNotTheGround) {
 }
 
 // A bowl whose outside is blank but for a few points: the space in it, into which all look, is not the object.
-TEST(BuildSeed, ABowlIsItsWallAndNotWhatIsInIt) {
+// Where a bowl of radius `radius` and its mouth at 0 is at a depth (of the radius) and a turn.
+Eigen::Vector3d OnBowl(double radius, double depth, double turn) {
+  const double r = std::sqrt(1 - depth * depth);
+  return {radius * r * std::cos(turn), radius * r * std::sin(turn), -radius * depth};
+}
+
+// Many points on its inside, few on its outside.
+Scene BowlScene() {
   Scene scene = DomeScene(9, 5);
-  const auto at = [](double radius, double height, double turn) {
-    const double z = -height, r = std::sqrt(1 - z * z);
-    return Eigen::Vector3d(radius * r * std::cos(turn), radius * r * std::sin(turn), radius * z);
-  };
   for (int i = 0; i < 220; ++i) {
-    const Eigen::Vector3d x = at(1, (i + 0.5) / 220, 2.4 * i);
+    const Eigen::Vector3d x = OnBowl(1, (i + 0.5) / 220, 2.4 * i);
     AddPoint(scene, x, [&](const Eigen::Vector3d& eye) {
       const double share = x.z() / (x.z() - eye.z());  // of the way, where it leaves the mouth
       return (x + share * (eye - x)).norm() < 0.97;
     });
   }
   for (int i = 0; i < 60; ++i) {
-    const Eigen::Vector3d x = at(1.06, 0.7 * i / 60, 2.4 * i);
+    const Eigen::Vector3d x = OnBowl(1.06, 0.7 * i / 60, 2.4 * i);
     AddPoint(scene, x, [&](const Eigen::Vector3d& eye) { return x.dot(eye - x) > 0.2; });
   }
   AddGround(scene, -1.1, 4, 12);
+  return scene;
+}
+
+TEST(BuildSeed, ABowlIsItsWallAndNotWhatIsInIt) {
+  const Scene scene = BowlScene();
   const SeedResult seed = BuildSeed(scene, Coarse());
   ASSERT_FALSE(seed.smooth.empty());
   EXPECT_LT(SignedVolume(seed.smooth), 0.4 * 2 * M_PI / 3);
   const ClosestPointQuery query(seed.smooth);
   std::vector<double> off;
   for (int i = 0; i < 100; ++i)
-    off.push_back(std::sqrt(query.Find(at(1, 0.3 + 0.7 * i / 100, 2.4 * i))->squared_distance));
+    off.push_back(std::sqrt(query.Find(OnBowl(1, 0.3 + 0.7 * i / 100, 2.4 * i))->squared_distance));
   EXPECT_LT(Median(off), 0.02);
+}
+
+// Outlines show its outside but for the foot, which nobody sees: there it is still a wall.
+TEST(BuildSeed, ABowlWithOutlinesIsStillAWall) {
+  const Scene scene = BowlScene();
+  const PointReliability reliability = JudgePoints(scene, {});
+  const ObjectChoice choice = ChooseObject(scene, reliability, {}, {}, nullptr, Progress::Silent());
+  const SparseSurface alone = MakeSparseSurface(scene, reliability, choice, {});
+  EXPECT_TRUE(alone.is_wall);
+  RimEvidence rim;
+  rim.depth = 0.03;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d x = OnBowl(1.06, 0.7 * i / 300, 2.4 * i);
+    rim.points.push_back({x, x.normalized(), 0.005});
+  }
+  rim.of_a_wall = alone.is_wall;
+  const SparseSurface with = MakeSparseSurface(scene, reliability, choice, {}, rim);
+  EXPECT_TRUE(with.is_wall);
+  ASSERT_FALSE(with.mesh.empty());
+  const ClosestPointQuery query(with.mesh);
+  for (int i = 0; i < 50; ++i)
+    EXPECT_LT(query.Find(OnBowl(1, 0.9 + 0.1 * i / 50, 2.4 * i))->squared_distance, 0.05 * 0.05) << i;
 }
 
 // A windscreen over a textured box: its frame and some dust have points, and the box is seen through it.

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "geometry/triangle_mesh.h"
 #include "io/project_images.h"
+#include "silhouette/hull.h"
 #include "silhouette/support.h"
 #include "tests/seed/simulated_scene.h"
 
@@ -128,6 +129,30 @@ TEST_F(Outlines, AreFoundInPhotographs) {
   EXPECT_EQ(summary.source, "photographs");
   ASSERT_GT(s.outline().size(), 2000u);
   ExpectOnBall(s.outline(), 0.015, 0.03);
+}
+
+// Every fourth mask lacks the upper half of the ball.
+TEST_F(Outlines, HullOfMostIsTheBallWhereSomeMasksAreWrong) {
+  std::vector<internal::ViewMask> masks;
+  for (size_t i = 0; i < scene_->views.size(); ++i) {
+    const View& view = scene_->views[i];
+    cv::Mat mask = (*masks_)[i].clone();
+    if (i % 4 == 0) mask.rowRange(0, mask.rows / 2).setTo(0);
+    const internal::Raster raster{cv::Rect({0, 0}, mask.size()), 1, mask.size()};
+    masks.push_back({i, raster, internal::SignedDistance(mask), view.Center(), 450});
+  }
+  const internal::Reach reach{{0.1, 0, 0}, 1.8};
+  const TriangleMesh hull = internal::HullOfMost(*scene_, masks, reach, std::nullopt);
+  ASSERT_FALSE(hull.empty());
+  double least = 1e9;
+  for (const Eigen::Vector3d& x : hull.vertices) least = std::min(least, x.norm());
+  EXPECT_GT(least, 0.95 * kBallRadius);
+  EXPECT_GT(SignedVolume(hull), 4.0 / 3 * M_PI * std::pow(kBallRadius, 3));
+  EXPECT_LT(SignedVolume(hull), 1.5 * 4.0 / 3 * M_PI * std::pow(kBallRadius, 3));
+  // The ground cuts it off.
+  const Eigen::Hyperplane<double, 3> ground(Eigen::Vector3d::UnitZ(), 0.2);
+  const TriangleMesh above = internal::HullOfMost(*scene_, masks, reach, ground);
+  EXPECT_NEAR(BoundingBox(above).min().z(), -0.2, 1e-6);
 }
 
 TEST_F(Outlines, OfOneWrongViewAreLeftOut) {
