@@ -67,20 +67,20 @@ struct Judged {
   size_t count = 0;
 };
 
-// What the other views say of one's outline.
+// What the other views say of one's outline; what may be a shadow's counts neither for it nor against it.
 Judged Judge(const Work& work, const internal::MaskSet& set, int own, const Candidate& candidate) {
   Judged out;
   const internal::Reach reach = work.Ball();
   for (const ContourPoint& p : candidate.contour) {
     std::optional<OutlineSample> s = RayOf(work, set.masks[own], p);
     if (!s) continue;
-    ++out.count;
     const auto outside = internal::FindContact(work.scene, set, own, reach, kSlackRel * work.diagonal, *s);
-    if (!outside || *outside > kExcessRel * work.diagonal || *outside < -kRoomRel * work.diagonal) continue;
-    s->sigma = candidate.sigma_px * s->depth / set.masks[own].focal_px;
-    if (candidate.found && work.rough.ground &&
+    if (outside && candidate.found && work.rough.ground &&
         work.rough.ground->signedDistance(set.masks[own].eye + s->depth * s->ray) < kGroundRel * work.diagonal)
       continue;
+    ++out.count;
+    if (!outside || *outside > kExcessRel * work.diagonal || *outside < -kRoomRel * work.diagonal) continue;
+    s->sigma = candidate.sigma_px * s->depth / set.masks[own].focal_px;
     out.trusted.push_back(*s);
   }
   return out;
