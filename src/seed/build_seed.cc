@@ -128,7 +128,7 @@ TriangleMesh Subdivided(const Shape& shape) {
 }
 
 // What comes of a finer change to the surface, unless it tears tunnels: then what was found fits together nowhere.
-TriangleMesh UnlessTorn(const TriangleMesh& before, TriangleMesh after) {
+TriangleMesh UnlessTorn(const TriangleMesh& before, const TriangleMesh& after) {
   return after.empty() || GenusOf(after) > GenusOf(before) ? before : after;
 }
 

@@ -179,8 +179,8 @@ TriangleMesh CellSurface(const Tetrahedra& tetrahedra, const std::vector<uint8_t
   const std::vector<int> middle = SplitRepeatedEdges(border, vertex, static_cast<int>(point_of_vertex.size()));
   TriangleMesh mesh;
   for (int p : point_of_vertex) mesh.vertices.push_back(tetrahedra.points[p]);
-  for (int f = 0; f < static_cast<int>(border.facets.size()); ++f) {
-    for (int h = 3 * f; h < 3 * f + 3; ++h) {
+  for (size_t f = 0; f < border.facets.size(); ++f) {
+    for (size_t h = 3 * f; h < 3 * f + 3; ++h) {
       if (middle[h] < 0) continue;
       const size_t needed = static_cast<size_t>(middle[h]) + 1;
       if (mesh.vertices.size() < needed) {

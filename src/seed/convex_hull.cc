@@ -37,7 +37,8 @@ double DistanceToConvex(const std::vector<Eigen::Vector2d>& polygon, const Eigen
   double nearest = std::numeric_limits<double>::infinity();
   bool inside = polygon.size() >= 3;
   for (size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+    const Eigen::Vector2d& a = polygon[i];
+    const Eigen::Vector2d& b = polygon[(i + 1) % polygon.size()];
     inside = inside && Cross(a, b, x) >= 0;
     const double length2 = (b - a).squaredNorm();
     const double t = length2 > 0 ? std::clamp((x - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
