@@ -32,7 +32,7 @@ std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Ei
   std::array<double, kMaxContradictions> worst;
   worst.fill(-kFar);
   const int count = std::clamp(set.contradictions, 1, kMaxContradictions);
-  int witnesses = 0;
+  size_t witnesses = 0;
   ForWitnesses(scene, set.masks, x, skip, [&](double d) {
     ++witnesses;
     for (int k = 0; k < count; ++k)
@@ -46,7 +46,7 @@ std::optional<double> OutsideByMost(const Scene& scene, const std::vector<ViewMa
                                     double wrong_share) {
   std::vector<double> distances;
   ForWitnesses(scene, masks, x, -1, [&](double d) { distances.push_back(d); });
-  if (2 * distances.size() < masks.size()) return std::nullopt;
+  if (distances.size() < kMinWitnesses || 2 * distances.size() < masks.size()) return std::nullopt;
   const auto wrong = static_cast<size_t>(wrong_share * static_cast<double>(distances.size()));
   std::nth_element(distances.begin(), distances.begin() + wrong, distances.end(), std::greater<>());
   return distances[wrong];

@@ -12,7 +12,7 @@
 
 namespace glint::internal {
 
-inline constexpr int kMinWitnesses = 4;  // views that must see a place to say something of it
+inline constexpr size_t kMinWitnesses = 4;  // views that must see a place to say something of it
 
 // The masks, and how many of them must say so before a place is excluded: not the largest distance by which a mask
 // excludes it counts, but the one that so many exceed or reach, so that fewer wrong ones decide nothing.
@@ -24,7 +24,7 @@ struct MaskSet {
 // By how much x is outside of what the masks (but `skip`) leave room for, world units.
 std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Eigen::Vector3d& x, int skip = -1);
 
-// The same, but for the share of the masks that may be wrong; nothing where fewer than half of them know of x.
+// The same, but for the share of the masks that may be wrong; nothing, too, where fewer than half of them know of x.
 std::optional<double> OutsideByMost(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x,
                                     double wrong_share);
 

@@ -155,6 +155,15 @@ TEST_F(Outlines, HullOfMostIsTheBallWhereSomeMasksAreWrong) {
   EXPECT_NEAR(BoundingBox(above).min().z(), -0.2, 1e-6);
 }
 
+TEST_F(Outlines, AreNoneWithoutPhotographs) {
+  const TriangleMesh rough = Ball(0.9);
+  SilhouetteSummary summary;
+  const Silhouettes s = FindSilhouettes(*scene_, MemoryImages(std::vector<cv::Mat>(kViews)), {rough, {}}, {}, &summary);
+  EXPECT_TRUE(s.outline().empty());
+  EXPECT_EQ(summary.num_views, 0u);
+  EXPECT_TRUE(internal::HullOfMost(*scene_, {}, {{0, 0, 0}, 2}, std::nullopt).empty());
+}
+
 TEST_F(Outlines, OfOneWrongViewAreLeftOut) {
   const TriangleMesh rough = Ball(0.9);
   std::vector<cv::Mat> masks = *masks_;
