@@ -86,6 +86,14 @@ struct Made {
   ObjectChoice choice;
 };
 
+// Where no smooth solid comes of the points: slivers of a thin wall, which needs a back.
+void MakeOfAWall(const Scene& scene, const Made& points, const SeedOptions& options, Made& made, Progress& progress) {
+  Made wall = points;
+  wall.shape =
+      MakeShape(scene, wall.reliability, wall.choice, {.of_a_wall = true}, options.surface, options.smooth, progress);
+  if (wall.shape.sparse.is_wall && !wall.shape.folded) made = std::move(wall);
+}
+
 // Outlines around the shape that stands so far, and the shape of points and outlines, which takes its place if it fits
 // them better. False if there is nothing more to gain.
 bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOptions& options, const ImageSource& images,
@@ -225,6 +233,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   Made made{{}, reliability, choice};
   Made alone = made;  // before points are taken out of it
   made.shape = MakeShape(scene, made.reliability, made.choice, {}, options.surface, options.smooth, progress);
+  if (made.shape.folded) MakeOfAWall(scene, alone, options, made, progress);
   alone.shape = made.shape;
   Silhouettes silhouettes;
   for (int pass = 0; pass < kOutlinePasses && images && !made.shape.sparse.mesh.empty(); ++pass)

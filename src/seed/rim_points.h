@@ -21,10 +21,10 @@ struct RimPoint {
 
 // What outlines tell the sparse surface. Empty: nothing.
 struct RimEvidence {
-  std::vector<RimPoint> points;
-  std::vector<FreeLine> free_lines;  // rays that pass just outside of the object
-  double depth = 0;                  // world units: matter this far behind every rim point
-  bool of_a_wall = false;            // the points alone made sense as a thin wall only
+  std::vector<RimPoint> points = {};
+  std::vector<FreeLine> free_lines = {};  // rays that pass just outside of the object
+  double depth = 0;                       // world units: matter this far behind every rim point
+  bool of_a_wall = false;                 // the points alone made sense as a thin wall only
 };
 
 // Places of samples that are known well along their rays, averaged over their neighbours, thinned, where `points` (the
