@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "highlights/check_lights.h"
+#include "geometry/convex_distance.h"
 #include "highlights/expected_views.h"
 #include "highlights/exposure.h"
 #include "highlights/judge_lights.h"
@@ -19,6 +19,7 @@ namespace glint {
 namespace {
 
 constexpr int kPasses = 2;
+constexpr double kLampRoomRel = 0.05;  // of the diagonal: no lamp is nearer to the object
 
 std::vector<LightObservation> Observe(const Scene& scene, const SeedSurface& surface,
                                       const std::vector<Highlight>& candidates, const std::vector<Moving>& moving) {
@@ -33,7 +34,7 @@ std::vector<LightObservation> Observe(const Scene& scene, const SeedSurface& sur
   return observations;
 }
 
-LightFitOptions FitOptions(const GateOptions& gate, const FindLightsOptions& options) {
+LightFitOptions FitOptions(const GateOptions& gate, const FindLightsOptions& options, const TriangleMesh& seed) {
   LightFitOptions fit;
   fit.max_lights = options.max_lights;
   fit.min_support = options.min_support;
@@ -41,6 +42,10 @@ LightFitOptions FitOptions(const GateOptions& gate, const FindLightsOptions& opt
   fit.max_normal_sigma_deg = options.max_normal_sigma_deg;
   fit.allow_distant = options.kinds != "point";
   fit.allow_point = options.kinds != "distant";
+  // In the object, or in a bowl's mouth, photographs would show it; but its flash's reflections all point there.
+  fit.may_be_at = [&seed, room = kLampRoomRel * Diagonal(seed)](const Eigen::Vector3d& lamp) {
+    return !NearConvexHull(seed.vertices, lamp, room);
+  };
   return fit;
 }
 
@@ -112,7 +117,7 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
     told.not_paint = moving.size();
     moving = Strongest(candidates, brightness, std::move(moving), gate.min_relative_strength, options.max_candidates);
     observations = Observe(scene, surface, candidates, moving);
-    fit = FitLights(observations, BoundingBox(seed).center(), diagonal, FitOptions(gate, options));
+    fit = FitLights(observations, BoundingBox(seed).center(), diagonal, FitOptions(gate, options, seed));
     moving_lights.resize(1);
     for (const FoundLight& f : fit.lights)
       if (f.light.frame == LightFrame::kCamera) moving_lights.push_back(f.light);
@@ -137,7 +142,7 @@ std::vector<FoundLight> FindLights(const Scene& scene, const ImageSource& images
     LimitToGroups(scene, groups, k, f.light, shows[k].expected);
     MeasureSize(scene, surface, of_light(k), BoundingBox(seed).center(), f);
     const auto seen = OfLight(observations, fit.assignment, static_cast<int>(k));
-    evidence.push_back({InsideObject(f.light, seed), Spread(seen),
+    evidence.push_back({Spread(seen),
                         static_cast<int>(std::count(shows[k].expected.begin(), shows[k].expected.end(), 1)),
                         WidthsDeg(scene, surface, of_light(k), f.light),
                         HalfVectorSigma(seen, fit.lights[k].covariance, diagonal, f.light) * 180 / M_PI});

@@ -25,7 +25,6 @@ constexpr double kManySpots = 8, kLittleExplained = 0.25;
 std::string WhyNot(const FoundLight& f, const LightEvidence& e, double diagonal, const FindLightsOptions& options) {
   const bool distant = f.light.type == LightType::kDistant;
   const double max_sigma = distant ? options.max_sigma_deg : options.max_sigma_deg * M_PI / 180 * 5 * diagonal;
-  if (e.inside_object) return "it would lie inside the object";
   if (e.spread_world < kOneSpotRel * diagonal) return "its highlights are all on one spot";
   if (f.support < options.min_support) return fmt::format("only {:.1f} highlights point to it", f.support);
   if (f.light.sigma > max_sigma)

@@ -15,7 +15,6 @@ namespace glint {
 
 // Of one light, beside what FitLights() says.
 struct LightEvidence {
-  bool inside_object = false;
   double spread_world = 0;         // rms distance of its highlights on the surface from their middle
   int expected_views = 0;          // in which the surface has a place that would mirror it
   std::vector<double> widths_deg;  // of its highlights' lobes (mirror_test.h)

@@ -77,7 +77,8 @@ class Fitter {
     ParallelFor(tried.size(), 1, [&](size_t t) { em_.Finish(tried[t]); });
     LightMixture best;
     for (LightMixture& m : tried)
-      if (m.criterion + kDecisive * Boldness(m) < best.criterion + kDecisive * Boldness(best)) best = std::move(m);
+      if (Possible(m) && m.criterion + kDecisive * Boldness(m) < best.criterion + kDecisive * Boldness(best))
+        best = std::move(m);
     return best;
   }
 
@@ -117,11 +118,17 @@ class Fitter {
         em_.Finish(m);
         const double margin = kDecisive * (Boldness(other) - Boldness(best.lights[k]));
         const bool near = other.type == LightType::kPoint && !IsFlash(other);
-        if (m.criterion < best.criterion - margin && m.LeastSupport() >= options_.min_support &&
+        if (Possible(m) && m.criterion < best.criterion - margin && m.LeastSupport() >= options_.min_support &&
             (!near || DistanceIsDetermined(m, k)))
           best = std::move(m);
       }
     }
+  }
+
+  bool Possible(const LightMixture& m) const {
+    return !options_.may_be_at || std::all_of(m.lights.begin(), m.lights.end(), [&](const Light& light) {
+      return light.type != LightType::kPoint || light.frame != LightFrame::kWorld || options_.may_be_at(light.vector);
+    });
   }
 
   // Of two kinds that explain about as much the one that is usual: a flash, or a lamp that stands far away.

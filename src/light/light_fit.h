@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "geometry/rigid.h"
@@ -28,6 +29,8 @@ struct LightFitOptions {
   bool allow_point = true;
   bool allow_world = true;
   bool allow_camera = true;
+  // Where a lamp that stands still may be, in the world; empty: anywhere.
+  std::function<bool(const Eigen::Vector3d&)> may_be_at = {};
 };
 
 struct LightFit {
@@ -42,7 +45,8 @@ struct LightFit {
 // refined by expectation maximisation, and kept while the Bayesian information criterion falls; then each is tried as
 // a near one. That some light moves with the camera is a hypothesis of its own: then all that may be paint under such
 // a light counts as outliers. Of two hypotheses what they say of lights counts, not of crowds of marks. A point light
-// in the camera's frame is expected near the camera. `center`, `diagonal`: of the object, for the scale of positions.
+// in the camera's frame is expected near the camera; one in the world where options.may_be_at allows it. `center`,
+// `diagonal`: of the object, for the scale of positions.
 LightFit FitLights(const std::vector<LightObservation>& observations, const Eigen::Vector3d& center, double diagonal,
                    const LightFitOptions& options);
 

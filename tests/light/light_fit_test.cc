@@ -107,6 +107,20 @@ TEST(FitLights, ANearLightIsToldFromADistantOne) {
   EXPECT_EQ(distant.lights[0].light.type, LightType::kDistant);
 }
 
+TEST(FitLights, ALampIsNotWhereItMayNotBe) {
+  Simulated scene;
+  const Light near{LightType::kPoint, LightFrame::kWorld, scene.center + Eigen::Vector3d(1.2, -1.6, 2.2), 0};
+  std::vector<LightObservation> observations;
+  scene.Add(observations, near, 1.5);
+  LightFitOptions options;
+  options.may_be_at = [&](const Eigen::Vector3d& lamp) { return (lamp - near.vector).norm() > 0.8; };
+  const LightFit fit = scene.Fit(observations, options);
+  for (const FoundLight& f : fit.lights)
+    EXPECT_TRUE(f.light.type == LightType::kDistant || f.light.frame == LightFrame::kCamera ||
+                options.may_be_at(f.light.vector))
+        << f.light.vector.transpose();
+}
+
 TEST(FitLights, AVeryNearLightIsNotTwoDistantOnes) {
   Simulated left, right;
   left.center = {-1.5, 0, 0}, right.center = {1.5, 0, 0};
