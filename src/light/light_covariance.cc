@@ -49,7 +49,7 @@ WeightedRows MakeRows(const std::vector<LightObservation>& observations, const E
     if (responsibilities[i] > 0.5 && Disagreement(observations[i], light, max_incidence_deg) < 3) of_light.push_back(i);
   const int p = NumParameters(light), n = static_cast<int>(of_light.size());
   WeightedRows rows{Eigen::VectorXd(2 * n), Eigen::MatrixXd(2 * n, p), Eigen::MatrixXd(2 * n, kMapSize), {}, {}};
-  for (int k = 0; k < n; ++k) {
+  for (Eigen::Index k = 0; k < n; ++k) {
     const LightObservation& o = observations[of_light[k]];
     const Eigen::Vector3d half = HalfVector(light, o.cam_from_world, o.position), r = half - o.normal;
     Eigen::Matrix<double, 3, 2> axes;

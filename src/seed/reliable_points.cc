@@ -51,7 +51,7 @@ void MarkIsolated(const Scene& scene, double max_isolation, std::vector<PointSta
       used.push_back(static_cast<int>(i));
       positions.push_back(scene.points[i].position);
     }
-  if (positions.size() <= 2 * kNeighbors) return;
+  if (positions.size() <= 2 * size_t{kNeighbors}) return;
   const PointIndex index(positions);
   std::vector<std::vector<int>> neighbors(positions.size());
   std::vector<double> spacing(positions.size());
