@@ -64,7 +64,7 @@ std::vector<uint32_t> Representatives(const std::vector<Eigen::Vector3d>& vertic
     for (auto i = begin; i != end; ++i) {
       if (i->hash != same->hash) same = i;
       const Eigen::Vector3d& x = vertices[i->vertex];
-      auto j = x == x ? same : i;  // NaN differs from itself, and from all others
+      auto j = x.hasNaN() ? i : same;  // NaN differs from itself, and from all others
       while (j != i && vertices[j->vertex] != x) ++j;
       representative[i->vertex] = j->vertex;
     }

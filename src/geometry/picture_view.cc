@@ -82,8 +82,10 @@ std::vector<uint8_t> RenderPixels(const PictureView& view, const Look& look,
   ParallelFor(static_cast<size_t>(view.height), 4, [&](size_t row) {
     for (int column = 0; column < view.width; ++column) {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      for (int i = 0; i < n * n; ++i)
-        sum += trace(column + (i % n + 0.5) / n, static_cast<double>(row) + (i / n + 0.5) / n).cwiseMin(1.0);
+      for (int i = 0; i < n * n; ++i) {
+        const int across = i % n, down = i / n;
+        sum += trace(column + (across + 0.5) / n, static_cast<double>(row) + (down + 0.5) / n).cwiseMin(1.0);
+      }
       for (int k = 0; k < 3; ++k)
         pixels[3 * (row * static_cast<size_t>(view.width) + static_cast<size_t>(column)) + static_cast<size_t>(k)] =
             SrgbFromLinear(sum[k] / (n * n));

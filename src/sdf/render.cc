@@ -97,7 +97,7 @@ std::pair<double, double> ClipToBox(const Vec3d& origin, const Vec3d& direction,
 
 std::vector<uint8_t> RenderLevelSet(const LevelSet& level_set, const PictureView& view, double iso_world,
                                     const Look& look) {
-  const Eigen::Vector3d background = LinearFromSrgb(look.background);
+  Eigen::Vector3d background = LinearFromSrgb(look.background);
   if (level_set.empty()) return RenderPixels(view, look, [&](double, double) { return background; });
   const openvdb::FloatGrid& grid = *level_set.impl().grid;
   RequireInBand(level_set, iso_world);
