@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "highlights/row_kernel.h"
 
 namespace glint {
 namespace {
@@ -12,69 +13,61 @@ namespace {
 constexpr double kWhite = 65535;
 constexpr double kOfContrast = 0.4;  // of what a blob must rise: the surroundings here are not yet its own
 
-// A level blurred over 18 × 18 of its pixels by way of the next level, some rows at a time.
+// A level blurred over 18 × 18 of its pixels by way of the next level.
 class Surroundings {
  public:
-  Surroundings(const std::vector<cv::Mat>& pyramid, int level) : size_(pyramid[level].size()) {
+  Surroundings(const std::vector<cv::Mat>& pyramid, int level) : width_(pyramid[level].cols) {
     is_half_ = level + 1 < static_cast<int>(pyramid.size());
     cv::blur(pyramid[is_half_ ? level + 1 : level], blurred_, is_half_ ? cv::Size(9, 9) : cv::Size(17, 17));
+    half_.resize(static_cast<size_t>(blurred_.cols) + 1);
   }
 
-  cv::Mat Rows(int first, int last) {
-    if (!is_half_) return blurred_.rowRange(first, last);
-    // What lies beyond the ends of a piece is interpolated, too.
-    constexpr int kBeyond = 2;
-    const int a = std::max(0, first / 2 - kBeyond), b = std::min(blurred_.rows, (last + 1) / 2 + kBeyond);
-    cv::pyrUp(blurred_.rowRange(a, b), piece_, {size_.width, std::min(2 * b, size_.height) - 2 * a});
-    return piece_.rowRange(first - 2 * a, last - 2 * a);
+  void Row(int y, uint16_t* out) {
+    if (!is_half_) {
+      std::copy_n(blurred_.ptr<uint16_t>(y), width_, out);
+      return;
+    }
+    const uint16_t* above = blurred_.ptr<uint16_t>(y / 2);
+    const uint16_t* below = blurred_.ptr<uint16_t>(std::min((y + 1) / 2, blurred_.rows - 1));
+    for (int x = 0; x < blurred_.cols; ++x) half_[x] = Middle(above[x], below[x]);
+    half_[blurred_.cols] = half_[blurred_.cols - 1];
+    for (int x = 0; x < width_ / 2; ++x) out[2 * x] = half_[x], out[2 * x + 1] = Middle(half_[x], half_[x + 1]);
+    if (width_ % 2 == 1) out[width_ - 1] = half_[width_ / 2];
   }
 
  private:
-  cv::Size size_;
+  static uint16_t Middle(uint16_t a, uint16_t b) { return static_cast<uint16_t>((a + b + 1) / 2); }
+
+  int width_;
   bool is_half_;
-  cv::Mat blurred_, piece_;
+  cv::Mat blurred_;
+  std::vector<uint16_t> half_;
 };
 
 }  // namespace
 
 std::vector<BrightPeak> FindPeaks(const std::vector<cv::Mat>& pyramid, int level, double min_strength,
                                   double min_contrast) {
-  constexpr int kBand = 48, kStride = 8;
-  const auto threshold = static_cast<int>(kOfContrast * min_strength * kWhite);
+  const auto threshold = static_cast<uint16_t>(std::min(kOfContrast * min_strength * kWhite, kWhite));
   const double contrast = kOfContrast * min_contrast;
-  std::vector<BrightPeak> peaks;
   const cv::Mat& smooth = pyramid[level];
   Surroundings surroundings(pyramid, level);
-  cv::Mat difference, highest, is_peak;
-  for (int first = 1; first + 1 < smooth.rows; first += kBand) {
-    const int last = std::min(first + kBand, smooth.rows - 1);
-    const cv::Mat wide = surroundings.Rows(first - 1, last + 1);
-    cv::subtract(smooth.rowRange(first - 1, last + 1), wide,
-                 difference);  // saturates at 0: only what is brighter counts
-    cv::dilate(difference, highest, cv::Mat());
-    cv::max(highest, cv::Scalar(threshold + 1), highest);
-    cv::compare(difference, highest, is_peak, cv::CMP_EQ);
-    for (int y = 1; y + 1 < difference.rows; ++y) {
-      const uint16_t* above = difference.ptr<uint16_t>(y - 1);
-      const uint16_t* row = difference.ptr<uint16_t>(y);
-      const auto look = [&](int x) {
-        const uint16_t d = row[x];
-        // Of equal neighbours the first is the peak.
-        if (d == row[x - 1] || d == above[x - 1] || d == above[x] || d == above[x + 1]) return;
-        if (d <= contrast * wide.ptr<uint16_t>(y)[x]) return;
-        const int at_y = first - 1 + y;
-        peaks.push_back({{x, at_y}, smooth.ptr<uint16_t>(at_y)[x] / kWhite});
-      };
-      const uint8_t* flags = is_peak.ptr<uint8_t>(y);
-      int x = 1;
-      for (; x + kStride < difference.cols; x += kStride) {
-        uint64_t any;
-        std::memcpy(&any, flags + x, kStride);
-        for (int k = 0; any != 0 && k < kStride; ++k)
-          if (flags[x + k]) look(x + k);
-      }
-      for (; x + 1 < difference.cols; ++x)
-        if (flags[x]) look(x);
+  // Row y of the surroundings, and of what is brighter, is in the buffers' row y modulo 4.
+  cv::Mat wide(4, smooth.cols + 64, CV_16UC1), brighter(4, smooth.cols + 64, CV_16UC1, cv::Scalar(0));
+  std::vector<int> columns(smooth.cols);
+  std::vector<BrightPeak> peaks;
+  for (int y = 0; y < smooth.rows; ++y) {
+    surroundings.Row(y, wide.ptr<uint16_t>(y % 4));
+    internal::SubtractRow(smooth.ptr<uint16_t>(y), wide.ptr<uint16_t>(y % 4), smooth.cols,
+                          brighter.ptr<uint16_t>(y % 4));
+    if (y < 2) continue;
+    const uint16_t* row = brighter.ptr<uint16_t>((y - 1) % 4);
+    const size_t num = internal::RowMaxima(brighter.ptr<uint16_t>((y - 2) % 4), row, brighter.ptr<uint16_t>(y % 4),
+                                           smooth.cols, threshold, columns.data());
+    for (size_t k = 0; k < num; ++k) {
+      const int x = columns[k];
+      if (row[x] <= contrast * wide.ptr<uint16_t>((y - 1) % 4)[x]) continue;
+      peaks.push_back({{x, y - 1}, smooth.ptr<uint16_t>(y - 1)[x] / kWhite});
     }
   }
   return peaks;

@@ -13,7 +13,7 @@ struct BrightPeak {
 };
 
 // Local maxima of the level less its surroundings (18 x 18 pixels) that may belong to a blob of the least strength and
-// contrast. In bands of rows: what is worked out stays in the cache.
+// contrast. Row by row: what is worked out stays in the cache.
 std::vector<BrightPeak> FindPeaks(const std::vector<cv::Mat>& pyramid, int level, double min_strength,
                                   double min_contrast);
 

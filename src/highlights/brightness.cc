@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "highlights/row_kernel.h"
 
 namespace glint {
 namespace {
@@ -24,15 +25,20 @@ const std::vector<uint16_t>& Table() {
   return table;
 }
 
+// sRGB is monotonic: the minimum of the codes is the minimum of the linear values.
 template <class T, int kChannels>
 void MinChannelRows(const cv::Mat& image, cv::Mat& out) {
   const uint16_t* table = Table<T>().data();
+  std::vector<T> least(image.cols);
   for (int y = 0; y < image.rows; ++y) {
     const T* in = image.ptr<T>(y);
     uint16_t* to = out.ptr<uint16_t>(y);
-    // sRGB is monotonic: the minimum of the codes is the minimum of the linear values.
-    for (int x = 0; x < image.cols; ++x, in += kChannels)
-      to[x] = table[kChannels == 1 ? in[0] : std::min(in[0], std::min(in[1 % kChannels], in[2 % kChannels]))];
+    if constexpr (sizeof(T) == 1 && kChannels == 3)
+      internal::LeastOfThreeRow(in, least.size(), least.data());
+    else
+      for (size_t x = 0; x < least.size(); ++x, in += kChannels)
+        least[x] = kChannels == 1 ? in[0] : std::min(in[0], std::min(in[1 % kChannels], in[2 % kChannels]));
+    for (size_t x = 0; x < least.size(); ++x) to[x] = table[least[x]];
   }
 }
 
@@ -78,15 +84,12 @@ cv::Mat LinearColors(const cv::Mat& image) {
   return out;
 }
 
-std::array<float, 3> LinearColor(const cv::Mat& image, int x, int y) {
-  std::array<float, 3> color;
-  const int channels = image.channels();
-  for (int c = 0; c < 3; ++c) {
-    const int k = channels == 1 ? 0 : c;
-    color[c] = image.depth() == CV_8U ? Table<uint8_t>()[image.ptr<uint8_t>(y)[x * channels + k]] / 65535.f
-                                      : Table<uint16_t>()[image.ptr<uint16_t>(y)[x * channels + k]] / 65535.f;
-  }
-  return color;
-}
+LinearColorReader::LinearColorReader(const cv::Mat& image)
+    : image_(image),
+      table_(image.depth() == CV_8U ? Table<uint8_t>().data() : Table<uint16_t>().data()),
+      channels_(image.channels()),
+      green_(channels_ == 1 ? 0 : 1),
+      red_(channels_ == 1 ? 0 : 2),
+      is_8_bit_(image.depth() == CV_8U) {}
 
 }  // namespace glint

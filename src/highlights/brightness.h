@@ -16,7 +16,25 @@ cv::Mat LinearMinChannel(const cv::Mat& image);
 // Linear colours, CV_16UC3, BGR, 65535 = sensor white; of the same images.
 cv::Mat LinearColors(const cv::Mat& image);
 
-// Linear colour (BGR, 1 = sensor white) of one pixel of such an image.
-std::array<float, 3> LinearColor(const cv::Mat& image, int x, int y);
+// Linear colours (BGR, 65535 = sensor white) of single pixels of such an image, which must outlive it.
+class LinearColorReader {
+ public:
+  explicit LinearColorReader(const cv::Mat& image);
+
+  std::array<uint16_t, 3> operator()(int x, int y) const {
+    return is_8_bit_ ? Read(image_.ptr<uint8_t>(y) + x * channels_) : Read(image_.ptr<uint16_t>(y) + x * channels_);
+  }
+
+ private:
+  template <class T>
+  std::array<uint16_t, 3> Read(const T* pixel) const {
+    return {table_[pixel[0]], table_[pixel[green_]], table_[pixel[red_]]};
+  }
+
+  const cv::Mat& image_;
+  const uint16_t* table_;
+  int channels_, green_, red_;
+  bool is_8_bit_;
+};
 
 }  // namespace glint

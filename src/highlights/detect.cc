@@ -49,7 +49,7 @@ Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, c
   Highlight h;
   h.view = view;
   h.moments_px = blob.moments * scale * scale;
-  h.area_px = blob.pixels.size() * scale * scale;
+  h.area_px = blob.area * scale * scale;
   h.strength = blob.peak_value - blob.body;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(h.moments_px);
   // Half height lies two standard deviations from the centre.
@@ -57,7 +57,8 @@ Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, c
 
   LobeFit fit;
   if (h.status == HighlightStatus::kAccepted)
-    fit = FitLobe(map, mask, blob.centroid, blob.moments, blob.body, blob.peak_value, options.saturation);
+    fit = FitLobe(map, mask, blob.centroid, blob.moments, blob.body, blob.peak_value, options.saturation,
+                  options.max_profile_error);
   const Eigen::Vector2d peak = fit.ok ? fit.peak : blob.centroid;
   const Eigen::Matrix2d covariance = fit.ok ? fit.covariance : Eigen::Matrix2d(blob.moments / 2);
   h.px = scale * peak + Eigen::Vector2d(0.5, 0.5);
@@ -66,9 +67,7 @@ Highlight Describe(const cv::Mat& image, const Blob& blob, const cv::Mat& map, c
                     options.position_floor_px * options.position_floor_px * Eigen::Matrix2d::Identity();
   h.saturated_fraction = fit.saturated_fraction;
   h.flatness = Flatness(map, blob, options.saturation);
-  // Of a saturated blob only a thin rim is left to judge by.
-  if (fit.ok && fit.saturated_fraction < 0.05 && fit.profile_error > options.max_profile_error)
-    h.status = HighlightStatus::kNotALobe;
+  if (fit.ok && fit.profile_error > options.max_profile_error) h.status = HighlightStatus::kNotALobe;
   return h;
 }
 

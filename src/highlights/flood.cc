@@ -3,19 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <opencv2/core/hal/intrin.hpp>
+
+#include "highlights/row_kernel.h"
 
 namespace glint {
 namespace {
-
-// Bits of 64 values that are greater than `least`.
-uint64_t Greater(const uint16_t* values, uint16_t least) {
-  const cv::v_uint16x8 limit = cv::v_setall_u16(least);
-  uint64_t bits = 0;
-  for (int k = 0; k < 64; k += 8)
-    bits |= static_cast<uint64_t>(static_cast<uint32_t>(cv::v_signmask(cv::v_load(values + k) > limit))) << k;
-  return bits;
-}
 
 // The bits of `inside` that are connected to `seed` without a gap (Kogge, Stone: steps of 1, 2, 4, ...).
 uint64_t Spread(uint64_t seed, uint64_t inside) {
@@ -45,11 +37,11 @@ Flood::Row& Flood::At(int index) {
   const uint16_t* values = map_->ptr<uint16_t>(y);
   row.valid = ((uint64_t{1} << (x1 - x0)) - 1) << (x0 - corner_.x());
   if (corner_.x() >= 0 && corner_.x() + 64 <= map_->cols) {
-    row.above = Greater(values + corner_.x(), threshold_) & row.valid;
+    row.above = internal::BitsAbove(values + corner_.x(), threshold_) & row.valid;
   } else {
     std::array<uint16_t, 64> padded{};
     std::memcpy(padded.data() + (x0 - corner_.x()), values + x0, sizeof(uint16_t) * (x1 - x0));
-    row.above = Greater(padded.data(), threshold_);
+    row.above = internal::BitsAbove(padded.data(), threshold_);
   }
   if (!mask_->empty()) {
     const uint8_t* in_mask = mask_->ptr<uint8_t>(y);
@@ -87,8 +79,7 @@ bool Flood::Spill() {
   return true;
 }
 
-Flood::Outcome Flood::Fill(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2i& peak, uint16_t threshold,
-                           std::vector<Eigen::Vector2i>& pixels) {
+Flood::Outcome Flood::Fill(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2i& peak, uint16_t threshold) {
   map_ = &map, mask_ = &mask, threshold_ = threshold;
   corner_ = peak - Eigen::Vector2i(kWindow, kWindow);
   first_ = kRows, last_ = -1;
@@ -97,16 +88,22 @@ Flood::Outcome Flood::Fill(const cv::Mat& map, const cv::Mat& mask, const Eigen:
   Row& middle = At(kWindow);
   middle.filled = Spread(seed, middle.above | seed);
   Outcome outcome{!Spill(), false};
-  pixels.clear();
-  for (int r = top_; r <= bottom_; ++r) {
+  for (int r = top_; r <= bottom_ && !outcome.unbounded; ++r) {
     const uint64_t filled = rows_[r].filled;
-    if (!outcome.unbounded)
-      outcome.touches_border |= (((filled << 1) | (filled >> 1)) & ~rows_[r].valid) != 0 ||
-                                (filled & ~rows_[r - 1].valid) != 0 || (filled & ~rows_[r + 1].valid) != 0;
-    for (uint64_t bits = filled; bits != 0; bits &= bits - 1)
-      pixels.emplace_back(corner_.x() + std::countr_zero(bits), corner_.y() + r);
+    outcome.touches_border |= (((filled << 1) | (filled >> 1)) & ~rows_[r].valid) != 0 ||
+                              (filled & ~rows_[r - 1].valid) != 0 || (filled & ~rows_[r + 1].valid) != 0;
   }
   return outcome;
+}
+
+void Flood::Runs(std::vector<PixelRun>& runs) const {
+  runs.clear();
+  for (int r = top_; r <= bottom_; ++r)
+    for (uint64_t bits = rows_[r].filled; bits != 0;) {
+      const int start = std::countr_zero(bits), length = std::countr_one(bits >> start);
+      runs.push_back({corner_.x() + start, corner_.y() + r, length});
+      bits &= ~(((uint64_t{1} << length) - 1) << start);
+    }
 }
 
 }  // namespace glint

@@ -9,20 +9,27 @@
 
 namespace glint {
 
+// Pixels of a row side by side.
+struct PixelRun {
+  int x, y, length;
+};
+
 class Flood {
  public:
   static constexpr int kWindow = 31;  // half side
   static constexpr int kMaxPixels = 900;
 
   struct Outcome {
-    bool unbounded;       // reaches the window's border, or is larger than kMaxPixels: `pixels` are some of it
+    bool unbounded;       // reaches the window's border, or is larger than kMaxPixels: Runs() are some of it
     bool touches_border;  // of the image, or of the mask
   };
 
-  // Everything 4-connected to `peak` above `threshold`, in rows. `map`: CV_16UC1; `mask`: CV_8UC1 of its size or empty,
-  // 0 is ignored.
-  Outcome Fill(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2i& peak, uint16_t threshold,
-               std::vector<Eigen::Vector2i>& pixels);
+  // Everything 4-connected to `peak` above `threshold`. `map`: CV_16UC1; `mask`: CV_8UC1 of its size or empty, 0 is
+  // ignored.
+  Outcome Fill(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2i& peak, uint16_t threshold);
+
+  // What was filled last, from top to bottom.
+  void Runs(std::vector<PixelRun>& runs) const;
 
  private:
   static constexpr int kRows = 2 * kWindow + 1;

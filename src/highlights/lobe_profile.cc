@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-constexpr size_t kFewestPixels = 40;
+constexpr int kFewestPixels = 40;
 
 // A GGX lobe of unit width, (1 + r²)^-2, averaged over a disc.
 double Smeared(double r, double disc) {
@@ -56,12 +56,14 @@ const std::vector<Row>& Table() {
 }  // namespace
 
 double Flatness(const cv::Mat& map, const Blob& blob, double saturation) {
-  if (blob.pixels.size() < kFewestPixels || blob.peak_value >= saturation) return 0;
-  const double rise = blob.peak_value - blob.body;
-  const auto high = std::count_if(blob.pixels.begin(), blob.pixels.end(), [&](const Eigen::Vector2i& p) {
-    return map.ptr<uint16_t>(p.y())[p.x()] / 65535.0 > blob.body + 0.8 * rise;
-  });
-  return static_cast<double>(high) / static_cast<double>(blob.pixels.size());
+  if (blob.area < kFewestPixels || blob.peak_value >= saturation) return 0;
+  const auto limit = static_cast<uint16_t>(65535 * (blob.body + 0.8 * (blob.peak_value - blob.body)));
+  int high = 0;
+  for (const PixelRun& run : blob.runs) {
+    const uint16_t* values = map.ptr<uint16_t>(run.y) + run.x;
+    high += static_cast<int>(std::count_if(values, values + run.length, [limit](uint16_t v) { return v > limit; }));
+  }
+  return static_cast<double>(high) / blob.area;
 }
 
 double DiscShare(double flatness) {

@@ -6,6 +6,8 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "highlights/flood.h"
+
 namespace glint {
 
 // Level l is the map, smoothed a little and halved l times; its pixel (x, y) is centred on pixel (x, y) << l of the
@@ -14,14 +16,15 @@ std::vector<cv::Mat> BrightnessPyramid(cv::Mat map, int min_side_px = 12);
 
 struct Blob {
   int level = 0;
-  Eigen::Vector2i peak;                 // level pixels
-  double peak_value = 0;                // 1 = sensor white, smoothed at the level
-  double body = 0;                      // the surroundings' brightness
-  std::vector<Eigen::Vector2i> pixels;  // above half height, connected to the peak; level pixels
-  Eigen::Vector2d centroid;             // level pixels
-  Eigen::Matrix2d moments;              // of `pixels`, level pixels²
-  bool touches_border = false;          // of the image, or of the mask
-  bool unbounded = false;               // did not end within the largest size looked at
+  Eigen::Vector2i peak;         // level pixels
+  double peak_value = 0;        // 1 = sensor white, smoothed at the level
+  double body = 0;              // the surroundings' brightness
+  std::vector<PixelRun> runs;   // above half height, connected to the peak; level pixels
+  int area = 0;                 // of `runs`
+  Eigen::Vector2d centroid;     // level pixels
+  Eigen::Matrix2d moments;      // of `runs`, level pixels²
+  bool touches_border = false;  // of the image, or of the mask
+  bool unbounded = false;       // did not end within the largest size looked at
 };
 
 struct BlobOptions {

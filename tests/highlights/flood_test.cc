@@ -57,16 +57,19 @@ TEST(Flood, IsThatOfOnePixelAfterAnother) {
       mask.at<uint8_t>(peak.y(), peak.x()) = 255;
     }
     const Plain plain = FillPlainly(map, mask, peak, 20000);
-    std::vector<Eigen::Vector2i> pixels;
-    const Flood::Outcome outcome = flood.Fill(map, mask, peak, 20000, pixels);
+    const Flood::Outcome outcome = flood.Fill(map, mask, peak, 20000);
     ASSERT_EQ(outcome.unbounded, plain.unbounded) << "round " << round;
     ++(plain.unbounded ? unbounded : bounded);
     if (plain.unbounded) continue;
     EXPECT_EQ(outcome.touches_border, plain.touches_border) << "round " << round;
     Pixels found;
-    for (const Eigen::Vector2i& p : pixels) found.insert({p.x(), p.y()});
+    std::vector<PixelRun> runs;
+    flood.Runs(runs);
+    size_t count = 0;
+    for (const PixelRun& run : runs)
+      for (int k = 0; k < run.length; ++k, ++count) found.insert({run.x + k, run.y});
     EXPECT_EQ(found, plain.pixels) << "round " << round;
-    EXPECT_EQ(found.size(), pixels.size());
+    EXPECT_EQ(found.size(), count);
   }
   EXPECT_GT(bounded, 500);
   EXPECT_GT(unbounded, 100);

@@ -4,8 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 namespace glint::internal {
 namespace {
@@ -18,60 +18,85 @@ LobeSamples Samples() {
     for (int x = -7; x <= 7; ++x) {
       const float q = 0.05f * (x - 0.4f) * (x - 0.4f) + 0.11f * (y + 0.2f) * (y + 0.2f) + 0.01f * x * y;
       const float value = std::min(0.12f + 0.9f / ((1 + q) * (1 + q)) + 0.01f * std::sin(3.0f * x + 5.0f * y), 0.93f);
-      samples.Add(x, y, value, 0.01f + 0.02f * value, value >= 0.93f);
+      samples.Add(x, y, value);
     }
-  samples.Finish();
+  samples.Finish(0, 0.01f, 0.02f, 0.93f);
   return samples;
 }
 
 LobeParams Somewhere() {
   LobeParams p;
-  p << 0.02f, 0.1f, 0.3f, -0.25f, 0.2f, 0.03f, 0.3f, 0.05f, -0.04f, 0.06f;
+  p[kLogAmplitude] = 0.02f, p[kBody] = 0.1f, p[kPeakX] = 0.3f, p[kPeakY] = -0.25f;
+  p[kA] = 0.2f, p[kC] = 0.03f, p[kE] = 0.3f, p[kK] = 0.05f, p[kM] = -0.04f, p[kB] = 0.06f;
   return p;
 }
 
-double Cost(const LobeSamples& samples, const LobeParams& p, double scale) {
-  std::array<float, LobeSamples::kMost> residuals;
-  LobeResiduals(samples, p, residuals.data());
-  double cost = 0;
-  for (size_t i = 0; i < samples.count; ++i) cost += std::log1p(std::pow(residuals[i] / scale, 2));
-  return scale * scale * cost;
+LobeRows Rows(const LobeSamples& samples, const LobeParams& p) {
+  LobeRows rows;
+  EvaluateLobe(samples, p, rows);
+  return rows;
 }
 
 TEST(LobeKernel, RightHandSideIsTheCostsGradient) {
   const LobeSamples samples = Samples();
   ASSERT_GT(samples.saturated_count, 0u);
-  LobeEquations equations;
-  LineariseLobe(samples, Somewhere(), 1.5f, equations);
-  EXPECT_NEAR(equations.cost, Cost(samples, Somewhere(), 1.5), 1e-3 * equations.cost);
-  for (int k = 0; k < kNumLobeParams; ++k) {
-    LobeParams ahead = Somewhere(), behind = Somewhere();
-    ahead[k] += 2e-3f, behind[k] -= 2e-3f;
-    const double slope =
-        (Cost(samples, ahead, 1.5) - Cost(samples, behind, 1.5)) / (double(ahead[k]) - double(behind[k]));
-    EXPECT_NEAR(-2 * equations.rhs[k], slope, 0.02 * std::abs(slope) + 0.3) << "parameter " << k;
+  constexpr float kScale = 1.5f;
+  const LobeRows rows = Rows(samples, Somewhere());
+  double plain = 0;
+  for (size_t i = 0; i < samples.count; ++i)
+    plain += std::log1p(std::pow(rows.Row(LobeRows::kResidual)[i] / kScale, 2));
+  EXPECT_NEAR(LobeCost(samples.count, rows, kScale), kScale * kScale * plain, 1e-3 * plain);
+  for (const float least : {1.f, 0.2f}) {
+    LobeEquations equations;
+    NormaliseLobe(samples.count, rows, kScale, least, equations);
+    for (int k = 0; k < kNumLobeParams; ++k) {
+      LobeParams ahead = Somewhere(), behind = Somewhere();
+      ahead[k] += 2e-3f, behind[k] -= 2e-3f;
+      const double slope = (double(LobeCost(samples.count, Rows(samples, ahead), kScale)) -
+                            LobeCost(samples.count, Rows(samples, behind), kScale)) /
+                           (double(ahead[k]) - double(behind[k]));
+      EXPECT_NEAR(-2 * equations.rhs[k], slope, 0.02 * std::abs(slope) + 0.3) << "parameter " << k;
+    }
+    EXPECT_TRUE(equations.hessian.isApprox(equations.hessian.transpose()));
+    EXPECT_GT(equations.hessian.cast<double>().eval().ldlt().vectorD().minCoeff(), 0);
   }
-  EXPECT_TRUE(equations.hessian.isApprox(equations.hessian.transpose()));
-  EXPECT_GT(equations.hessian.cast<double>().eval().ldlt().vectorD().minCoeff(), 0);
+}
+
+TEST(LobeKernel, ScaleIsTheMedianOfWhatSaysSomething) {
+  const LobeSamples samples = Samples();
+  const LobeRows rows = Rows(samples, Somewhere());
+  std::vector<float> off;
+  for (size_t i = 0; i < samples.count; ++i)
+    if (const float r = std::abs(rows.Row(LobeRows::kResidual)[i]); r != 0) off.push_back(r);
+  std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
+  EXPECT_NEAR(LobeScale(samples.count, rows), 1.4826 * off[off.size() / 2], 0.05 * off[off.size() / 2]);
+}
+
+TEST(LobeKernel, ProfileErrorIsTheMeanDeviation) {
+  const LobeSamples samples = Samples();
+  const LobeRows rows = Rows(samples, Somewhere());
+  double sum = 0;
+  int count = 0;
+  for (size_t i = 0; i < samples.count; ++i) {
+    if (samples.saturated[i] > 0) continue;
+    sum += std::min(std::abs(rows.Row(LobeRows::kResidual)[i]) / samples.inverse_sigma[i], 0.2f);
+    ++count;
+  }
+  EXPECT_NEAR(LobeProfileError(samples, rows, 0.4f), sum / count / 0.4, 1e-4);
 }
 
 TEST(LobeKernel, SaturatedPixelsOnlyBoundFromBelow) {
-  LobeSamples samples = Samples();
-  LobeParams bright = Somewhere();
-  bright[0] = 2;  // far above saturation
-  std::array<float, LobeSamples::kMost> residuals;
-  LobeResiduals(samples, bright, residuals.data());
+  const LobeSamples samples = Samples();
+  LobeParams params = Somewhere();
+  params[kLogAmplitude] = 2;  // far above saturation
+  const LobeRows bright = Rows(samples, params);
+  params[kLogAmplitude] = -1;
+  const LobeRows dark = Rows(samples, params);
   for (size_t i = 0; i < samples.count; ++i) {
-    if (samples.saturated[i] > 0) {
-      EXPECT_EQ(residuals[i], 0);
-    }
-  }
-  bright[0] = -1;
-  LobeResiduals(samples, bright, residuals.data());
-  for (size_t i = 0; i < samples.count; ++i) {
-    if (samples.saturated[i] > 0) {
-      EXPECT_LT(residuals[i], 0);
-    }
+    if (samples.saturated[i] == 0) continue;
+    EXPECT_EQ(bright.Row(LobeRows::kResidual)[i], 0);
+    EXPECT_EQ(bright.Row(kBody)[i], 0);
+    EXPECT_LT(dark.Row(LobeRows::kResidual)[i], 0);
   }
 }
 
