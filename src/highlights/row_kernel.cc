@@ -64,7 +64,9 @@ void LeastOfThreeImpl(const uint8_t* in, size_t count, uint8_t* out) {
         hn::LoadInterleaved3(d, in + 3 * i, a, b, c);
         hn::StoreU(hn::Min(a, hn::Min(b, c)), d, out + i);
       },
-      [&](size_t i) { out[i] = std::min({in[3 * i], in[3 * i + 1], in[3 * i + 2]}); });
+      [&](size_t i) {
+        out[i] = std::min({in[3 * i], in[3 * i + 1], in[3 * i + 2]});
+      });
 }
 
 size_t MaximaImpl(const uint16_t* above, const uint16_t* row, const uint16_t* below, size_t count, uint16_t threshold,
