@@ -58,7 +58,8 @@ namespace {
 // Where the voxels do not carry more than the seed, it is held to a quarter of one.
 constexpr double kHeldSigmaVoxels = 0.25, kHeldLengthVoxels = 2;
 // In a gap between known places the seed is one guess, wrong all over it in one direction: errors are alike over three
-// times the way to the next place. Further than this from any, nobody looked, and the seed stays.
+// times the way to the next place, up to this. (Held as tightly beyond it as where points are dense, spheres, blobs and
+// tori are up to a third farther off there; a hood's underside, which nobody sees, would stay.)
 constexpr double kGapLengths = 3, kWidestGap = 0.1;
 
 // Of the seed, averaged over the next voxels (1 2 1 along each axis), so that the facets of its mesh are not taken for
