@@ -116,10 +116,13 @@ class Fitter {
         LightMixture m = best;
         m.Replace(k, other);
         em_.Finish(m);
+        if (!Possible(m) || m.LeastSupport() < options_.min_support) continue;
         const double margin = kDecisive * (Boldness(other) - Boldness(best.lights[k]));
-        const bool near = other.type == LightType::kPoint && !IsFlash(other);
-        if (Possible(m) && m.criterion < best.criterion - margin && m.LeastSupport() >= options_.min_support &&
-            (!near || DistanceIsDetermined(m, k)))
+        const bool better = m.criterion < best.criterion - margin;
+        // How well a distance fits is not to be believed where its error, which the criterion does not know, is as
+        // large.
+        if (IsNear(other) ? better && DistanceIsDetermined(m, k)
+                          : better || (IsNear(best.lights[k]) && !DistanceIsDetermined(best, k)))
           best = std::move(m);
       }
     }
@@ -130,6 +133,8 @@ class Fitter {
       return light.type != LightType::kPoint || light.frame != LightFrame::kWorld || options_.may_be_at(light.vector);
     });
   }
+
+  static bool IsNear(const Light& light) { return light.type == LightType::kPoint && !IsFlash(light); }
 
   // Of two kinds that explain about as much the one that is usual: a flash, or a lamp that stands far away.
   static int Boldness(const Light& light) {
@@ -160,47 +165,44 @@ class Fitter {
 
   // A light that could as well be infinitely far is a distant one.
   bool DistanceIsDetermined(const LightMixture& m, size_t k) const {
-    const FoundLight found = WithCovariance(m, k);
+    const Light& light = m.lights[k];
     Eigen::Vector3d away = Eigen::Vector3d::Zero();
     for (const LightObservation& o : observations_)
-      away += (found.light.vector - (found.light.frame == LightFrame::kWorld ? center_ : o.cam_from_world * center_)) /
+      away += (light.vector - (light.frame == LightFrame::kWorld ? center_ : o.cam_from_world * center_)) /
               observations_.size();
     const double distance = away.norm();
     away /= std::max(distance, 1e-12 * diagonal_);
-    return distance > 3 * std::sqrt(away.dot(found.covariance * away));
+    return distance > 3 * std::sqrt(away.dot(CovarianceOf(m, k) * away));
   }
 
-  FoundLight WithCovariance(const LightMixture& m, size_t j) const {
-    FoundLight out;
-    out.light = m.lights[j];
-    const Eigen::VectorXd weights = m.weights.col(j);
-    out.support = m.responsibilities.col(j).sum();
-    out.normal_sigma_deg = m.sigmas[j] / kRadians;
-    const Eigen::Matrix3d hessian =
-        LineariseLight(observations_, weights, out.light, options_.max_incidence_deg, diagonal_, em_.Prior(m.sigmas[j]))
-            .hessian;
-    const int p = NumParameters(out.light);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.topLeftCorner(p, p));
+  Eigen::Matrix3d CovarianceOf(const LightMixture& m, size_t k) const {
+    return LightCovariance(observations_, m.responsibilities.col(static_cast<long>(k)), m.sigmas[k],
+                           options_.max_incidence_deg, diagonal_, em_.Prior(m.sigmas[k]), m.lights[k]);
+  }
+
+  // Of the smallest to the largest eigenvalue.
+  double Conditioning(const LightMixture& m, size_t j) const {
+    const Eigen::VectorXd weights = m.weights.col(static_cast<long>(j));
+    const Eigen::Matrix3d hessian = LineariseLight(observations_, weights, m.lights[j], options_.max_incidence_deg,
+                                                   diagonal_, em_.Prior(m.sigmas[j]))
+                                        .hessian;
+    const int p = NumParameters(m.lights[j]);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.topLeftCorner(p, p), Eigen::EigenvaluesOnly);
     const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(1e-12);
-    out.conditioning = values[0] / values[p - 1];
-    // Highlights near each other share the error of the surface under them: about four count as one.
-    const Eigen::MatrixXd root =
-        2 * m.sigmas[j] * eigen.eigenvectors() * values.cwiseSqrt().cwiseInverse().asDiagonal();
-    const Eigen::MatrixXd spread = TangentBasis(out.light, diagonal_).leftCols(p) * root;
-    out.covariance = spread * spread.transpose();
-    const double sigma = 2 * m.sigmas[j] / std::sqrt(values[0]);
-    out.light.sigma = p == 2 ? std::min(sigma / kRadians, 90.0) : sigma * diagonal_;
-    return out;
+    return values[0] / values[p - 1];
   }
 
   FoundLight Describe(const LightMixture& m, size_t j) const {
-    FoundLight out = WithCovariance(m, j);
+    FoundLight out;
+    out.light = m.lights[j];
+    out.support = m.responsibilities.col(static_cast<long>(j)).sum();
+    out.normal_sigma_deg = m.sigmas[j] / kRadians;
+    out.conditioning = Conditioning(m, j);
     LightMixture without = m;
     without.Remove(j);
     em_.Finish(without);
     out.criterion_gain = without.criterion - m.criterion;
-    out.covariance = LightCovariance(observations_, m.responsibilities.col(static_cast<long>(j)), m.sigmas[j],
-                                     options_.max_incidence_deg, diagonal_, em_.Prior(m.sigmas[j]), out.light);
+    out.covariance = CovarianceOf(m, j);
     out.light.sigma = LargestSigma(out.covariance, out.light);
     return out;
   }

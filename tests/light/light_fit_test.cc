@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cfenv>
 #include <cmath>
 #include <random>
@@ -105,6 +106,36 @@ TEST(FitLights, ANearLightIsToldFromADistantOne) {
   const LightFit distant = scene.Fit(far);
   ASSERT_EQ(distant.lights.size(), 1u);
   EXPECT_EQ(distant.lights[0].light.type, LightType::kDistant);
+}
+
+// A seed that is a little too flat as a whole, and off in patches: a lamp that stands nearer bends the half vectors as
+// it bends the normals. How far it stands they do not tell, its direction they do.
+TEST(FitLights, ABentSeedDoesNotBringADistantLightNear) {
+  struct Case {
+    double bend, noise_deg;
+    int views;
+  };
+  const Light sun = Distant({0.6, -0.5, 0.7});
+  for (const auto& [bend, noise_deg, views] : {Case{0.1, 2.5, 24}, Case{0.1, 3.5, 40}, Case{0.06, 2.5, 40}}) {
+    Simulated scene;
+    std::vector<LightObservation> observations;
+    scene.Add(observations, sun, noise_deg, views);
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const LightObservation& o : observations) mean += o.normal / static_cast<double>(observations.size());
+    std::normal_distribution<double> noise(0, 0.3 * noise_deg * M_PI / 180);
+    std::array<Eigen::Vector3d, 4> of_patch;
+    for (Eigen::Vector3d& off : of_patch)
+      for (int axis = 0; axis < 3; ++axis) off[axis] = noise(scene.random);
+    for (LightObservation& o : observations) {
+      const int patch = (o.normal.x() > mean.x() ? 1 : 0) + (o.normal.y() > mean.y() ? 2 : 0);
+      o.normal = (o.normal - bend * (o.normal - mean) + of_patch[patch]).normalized();
+    }
+    const LightFit fit = scene.Fit(observations);
+    ASSERT_EQ(fit.lights.size(), 1u) << bend;
+    const FoundLight& f = fit.lights[0];
+    ASSERT_EQ(f.light.type, LightType::kDistant) << bend << ": " << f.light.vector.transpose() << ", " << f.light.sigma;
+    EXPECT_LT(AngleDeg(f.light.vector, sun.vector), 3 * f.light.sigma) << bend;
+  }
 }
 
 TEST(FitLights, ALampIsNotWhereItMayNotBe) {
