@@ -26,7 +26,7 @@ uint64_t NegativeBits(const float* slice) {
   uint8_t signs[64];
   for (int i = 0; i < 64; ++i) signs[i] = static_cast<uint8_t>(std::bit_cast<uint32_t>(slice[i]) >> 31);
   uint64_t bits = 0;
-  for (int i = 0; i < 8; ++i) {
+  for (size_t i = 0; i < 8; ++i) {
     uint64_t eight;
     std::memcpy(&eight, signs + 8 * i, 8);
     bits |= (eight * 0x0102040810204080ull >> 56) << (8 * i);  // gathers the lowest bits of eight bytes
@@ -45,7 +45,7 @@ size_t ConflictsWithin(const float* values, float limit) {
   };
   uint64_t before = 0;
   for (int x = 0; x < 8; ++x) {
-    const uint64_t bits = NegativeBits(values + 64 * x);
+    const uint64_t bits = NegativeBits(values + 64 * static_cast<size_t>(x));
     check((bits ^ bits >> 1) & 0x7f7f7f7f7f7f7f7full, 64 * x, 1);
     check((bits ^ bits >> 8) & 0x00ffffffffffffffull, 64 * x, 8);
     if (x > 0) check(bits ^ before, 64 * (x - 1), 64);
