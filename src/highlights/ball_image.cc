@@ -71,7 +71,8 @@ std::vector<Eigen::Vector2d> EdgesAlongRadii(const cv::Mat& gray, const BallCirc
     const double a = 2 * M_PI * k / kRadii;
     const Eigen::Vector2d out(std::cos(a), std::sin(a));
     double best = 4, best_r = 0;
-    for (double r = (1 - reach) * circle.radius_px; r <= (1 + reach) * circle.radius_px; r += 0.5) {
+    for (int half_px = 0; half_px <= 4 * reach * circle.radius_px; ++half_px) {
+      const double r = (1 - reach) * circle.radius_px + 0.5 * half_px;
       const Eigen::Vector2d p = circle.center_px + r * out;
       if (p.x() < 2 || p.y() < 2 || p.x() > gray.cols - 2 || p.y() > gray.rows - 2) continue;
       const double rise = std::abs(at(p + step * out) - at(p - step * out));

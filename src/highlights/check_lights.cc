@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/check.h"
 #include "geometry/winding_number.h"
 
 namespace glint {
@@ -60,6 +61,7 @@ std::vector<std::string> Contradictions(const std::vector<Light>& given, const s
       const double angle_deg = MeanAngleDeg(given[k], f->light, views, center);
       if (angle_deg < nearest.angle_deg) nearest = {f, angle_deg};
     }
+    GLINT_CHECK(nearest.light != nullptr);  // lights are finite, so there is an angle between them
     const double limit_deg = kTrustDeg + 3 * SigmaDeg(*nearest.light, views, center);
     if (nearest.angle_deg <= limit_deg) {
       explained.push_back(nearest.light);

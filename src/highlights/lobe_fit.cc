@@ -95,10 +95,8 @@ LobeFit FitLobe(const cv::Mat& map, const cv::Mat& mask, const Eigen::Vector2d& 
   if (!covariance) return fit;
 
   fit.ok = true;
-  fit.amplitude = std::exp(minimum.p[internal::kLogAmplitude]);
   fit.peak = centroid + moved;
   fit.covariance = std::max(1.0, kPerMeasurement / stride) * minimum.scale * minimum.scale * *covariance;
-  fit.body = minimum.p[internal::kBody];
   fit.profile_error = is_judged ? minimum.profile_error : 0;
   fit.saturated_fraction = saturated_fraction;
   return fit;

@@ -10,9 +10,7 @@ struct LobeFit {
   bool ok = false;
   Eigen::Vector2d peak;        // pixels of the map, OpenCV's frame
   Eigen::Matrix2d covariance;  // of the peak, pixels²
-  double amplitude = 0;        // over the body, 1 = sensor white; extrapolated where the core is saturated
-  double body = 0;
-  double profile_error = 0;  // robust residual relative to the rise seen; 0: too much is saturated to tell
+  double profile_error = 0;    // robust residual relative to the rise seen; 0: too much is saturated to tell
   double saturated_fraction = 0;
 };
 
