@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 
@@ -22,7 +23,8 @@ class LinearColorReader {
   explicit LinearColorReader(const cv::Mat& image);
 
   std::array<uint16_t, 3> operator()(int x, int y) const {
-    return is_8_bit_ ? Read(image_.ptr<uint8_t>(y) + x * channels_) : Read(image_.ptr<uint16_t>(y) + x * channels_);
+    const std::ptrdiff_t offset = std::ptrdiff_t{x} * channels_;
+    return is_8_bit_ ? Read(image_.ptr<uint8_t>(y) + offset) : Read(image_.ptr<uint16_t>(y) + offset);
   }
 
  private:

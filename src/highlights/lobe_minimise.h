@@ -19,12 +19,12 @@ struct LobeProblem {
 struct LobeMinimum {
   const LobeRows& Rows() const { return rows[current]; }
 
-  LobeParams p;  // in: where to begin
-  LobeEquations equations;
-  float scale = 1;               // of the residuals
-  float profile_error = 0;       // of the rise
   std::array<LobeRows, 2> rows;  // of the parameters, and those of a step that is tried
+  LobeEquations equations;
   size_t current = 0;
+  float scale = 1;          // of the residuals
+  float profile_error = 0;  // of the rise
+  LobeParams p;             // in: where to begin
 };
 
 // Levenberg-Marquardt on Cauchy's cost: re-weighted at first, then Newton's, which is faster near the minimum and loses
