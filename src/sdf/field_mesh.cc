@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
+#include "core/parallel.h"
 #include "sdf/triangulate_quads.h"
 
 namespace glint {
@@ -24,6 +25,24 @@ TriangleMesh MeshOfField(const DenseField& field, const Eigen::Affine3d& world_f
     mesh.vertices.push_back(world_from_index * Eigen::Vector3d(p[0], p[1], p[2]));
   mesh.faces = internal::Triangulate(in_index, triangles, quads);
   return mesh;
+}
+
+TriangleMesh MeshOfFunction(const Eigen::Vector3d& origin, double voxel, const Eigen::Vector3i& size,
+                            const std::function<double(const Eigen::Vector3d&)>& value) {
+  constexpr size_t kGrain = 256;
+  Eigen::Affine3d world_from_index = Eigen::Affine3d::Identity();
+  world_from_index.linear() *= voxel;
+  world_from_index.translation() = origin;
+  DenseField field;
+  field.size = size;
+  const auto rows = static_cast<size_t>(size[1]), columns = static_cast<size_t>(size[2]);
+  field.values.resize(static_cast<size_t>(size[0]) * rows * columns);
+  ParallelFor(field.values.size(), kGrain, [&](size_t i) {
+    const size_t z = i % columns, y = i / columns % rows, x = i / columns / rows;
+    field.values[i] = static_cast<float>(value(
+        world_from_index * Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z))));
+  });
+  return MeshOfField(field, world_from_index, 0);
 }
 
 }  // namespace glint
