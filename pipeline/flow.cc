@@ -217,10 +217,9 @@ void Flow::RefineSurface() {
 }
 
 // The bundle says where a light is, but too boldly how well that is known: its chords share the errors of the surface's
-// normals and count as independent. So a standard deviation never falls below what the votes said; on 36 synthetic
-// scenes that holds 95 of 100 lights within two of them, the bundle's alone 70. A light that was not solved for stays
-// as it was given. That the middle of an extended lamp is known less well than its highlights' the bundle does not
-// know.
+// normals and count as independent. So a standard deviation never falls below what the votes said. A light that was not
+// solved for stays as it was given. That the middle of an extended lamp is known less well than its highlights' the
+// bundle does not know.
 void Flow::TakeRefinedLights(const RefineResult& refined) {
   for (size_t k = 0; k < refined.lights.size(); ++k) {
     FoundLight& found = found_[k];

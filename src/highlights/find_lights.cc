@@ -42,7 +42,8 @@ LightFitOptions FitOptions(const GateOptions& gate, const FindLightsOptions& opt
   fit.max_normal_sigma_deg = options.max_normal_sigma_deg;
   fit.allow_distant = options.kinds != "point";
   fit.allow_point = options.kinds != "distant";
-  // In the object, or in a bowl's mouth, photographs would show it; but its flash's reflections all point there.
+  // A lamp in the object or in a bowl's mouth would be in the photographs, though all of a flash's reflections in a
+  // bowl point there.
   fit.may_be_at = [&seed, room = kLampRoomRel * Diagonal(seed)](const Eigen::Vector3d& lamp) {
     return !NearConvexHull(seed.vertices, lamp, room);
   };
