@@ -17,9 +17,7 @@ constexpr size_t kMaxRows = 32;  // with the same first voxel, on the coarse ban
 // The smoother takes down eigenvalues from here to 1. What the next coarser band cannot hold begins at 1/36 for the
 // squared Laplacian, whose waves across one axis are the slowest.
 constexpr float kSmallestSmoothed = 1.f / 30;
-constexpr int kDegree = 3;
-// The coarse bands are so much cheaper that a second cycle there, which halves the number of cycles, is nearly free.
-constexpr int kCoarseCycles = 2;
+constexpr int kDegree = 4;
 
 // The same terms for the coarse band: integrals over the surface, spread over fewer voxels of twice the size.
 BandWeights CoarseWeights(const BandWeights& fine, size_t num_fine, const BandTransfer& transfer) {
@@ -137,7 +135,7 @@ void BandMultigrid::FactorCoarsest() {
   level.direct.compute(matrix);
 }
 
-void BandMultigrid::Cycle(size_t level, bool fresh) {
+void BandMultigrid::Cycle(size_t level) {
   Level& fine = *levels_[level];
   const size_t n = fine.x.size();
   if (level + 1 == levels_.size()) {
@@ -145,15 +143,14 @@ void BandMultigrid::Cycle(size_t level, bool fresh) {
       Eigen::Map<Eigen::VectorXf>(fine.x.data(), n) =
           fine.direct.solve(Eigen::Map<const Eigen::VectorXf>(fine.b.data(), n));
     else
-      fine.Smooth(fresh);
+      fine.Smooth(true);
     return;
   }
   Level& coarse = *levels_[level + 1];
-  fine.Smooth(fresh);
+  fine.Smooth(true);
   fine.TakeResidual();
   coarse.transfer->Restrict(fine.residual, coarse.b);
-  const bool solved = level + 2 == levels_.size();  // by one
-  for (int k = 0; k < (solved ? 1 : kCoarseCycles); ++k) Cycle(level + 1, k == 0);
+  Cycle(level + 1);
   coarse.transfer->AddProlonged(coarse.x, fine.x);
   fine.Smooth(false);
 }
@@ -161,7 +158,7 @@ void BandMultigrid::Cycle(size_t level, bool fresh) {
 void BandMultigrid::Apply(const std::vector<double>& r, std::vector<double>& z) {
   Level& finest = *levels_[0];
   ParallelFor(r.size(), kGrain, [&](size_t i) { finest.b[i] = static_cast<float>(r[i]); });
-  Cycle(0, true);
+  Cycle(0);
   z.resize(r.size());
   ParallelFor(r.size(), kGrain, [&](size_t i) { z[i] = finest.x[i]; });
 }

@@ -1,4 +1,4 @@
-// One multigrid W-cycle over ever coarser bands, as a preconditioner for conjugate gradients.
+// One multigrid cycle over ever coarser bands, as a preconditioner for conjugate gradients.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ class BandMultigrid {
 
  private:
   struct Level;
-  void Cycle(size_t level, bool fresh);  // from x = 0 if `fresh`, else on
+  void Cycle(size_t level);
   void FactorCoarsest();
 
   const RowSample sample_;  // of the finest band's rows: those of the coarse ones
