@@ -108,6 +108,9 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   if (next.outline().empty()) return false;
   silhouettes = std::move(next);
   const std::vector<OutlineSample>& outline = silhouettes.outline();
+  s.outline_fit_before = OutlineFit(scene, outline, points_alone.shape.smooth);
+  s.outline_fit = OutlineFit(scene, outline, made.shape.smooth);
+  if (!s.outlines_used && found.source == "photographs" && s.outline_fit_before > kGoodWithout) return false;
   std::vector<Eigen::Vector3d> points;
   for (size_t i = 0; i < choice.role.size(); ++i)
     if (choice.role[i] == PointRole::kObject) points.push_back(scene.points[i].position);
@@ -115,11 +118,8 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   rim.of_a_wall = points_alone.shape.sparse.is_wall;
   Made with{{}, points_alone.reliability, points_alone.choice};
   with.shape = MakeShape(scene, with.reliability, with.choice, rim, options.surface, options.smooth, progress);
-  s.outline_fit_before = OutlineFit(scene, outline, points_alone.shape.smooth);
-  s.outline_fit = OutlineFit(scene, outline, made.shape.smooth);
   if (with.shape.sparse.mesh.empty() || (with.shape.folded && !made.shape.folded)) return false;
   const double fit = OutlineFit(scene, outline, with.shape.smooth);
-  if (!s.outlines_used && found.source == "photographs" && s.outline_fit_before > kGoodWithout) return false;
   const double most_left = s.outlines_used ? 1 : kWorthwhile;
   if (1 - fit >= most_left * (1 - s.outline_fit)) return false;
   s.outline_fit = fit;

@@ -1,6 +1,5 @@
 #include "seed/changed_parts.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "geometry/closest_point.h"
 #include "geometry/self_intersections.h"
 #include "sdf/signed_distance.h"
+#include "seed/positive_solve.h"
 #include "seed/thin_plate.h"
 
 namespace glint {
@@ -136,12 +136,10 @@ bool Solve(const std::vector<Touch>& touches, const std::vector<int>& unknown, i
     }
   SparseMatrix system(num_unknown, num_unknown);
   system.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<SparseMatrix> solver(system);
-  if (solver.info() != Eigen::Success) return false;
-  const Eigen::MatrixX3d x = solver.solve(right);
-  if (!x.allFinite()) return false;
+  const std::optional<Eigen::MatrixXd> x = SolvePositive(system, right);
+  if (!x) return false;
   for (size_t v = 0; v < unknown.size(); ++v)
-    if (unknown[v] >= 0) mesh.vertices[v] = x.row(unknown[v]);
+    if (unknown[v] >= 0) mesh.vertices[v] = x->row(unknown[v]);
   return true;
 }
 

@@ -1,10 +1,10 @@
 #include "seed/fair.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/check.h"
@@ -12,6 +12,7 @@
 #include "geometry/closest_point.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
+#include "seed/positive_solve.h"
 #include "seed/remesh.h"
 #include "seed/thin_plate.h"
 
@@ -92,22 +93,23 @@ std::vector<double> Trust(const std::vector<Attachment>& attachments, const std:
 
 // How well the surface is known at its vertices, 0 … 1: the density of the attachments, spread over `length`, against
 // `density` (attachments an area).
-Eigen::VectorXd Knowledge(const std::vector<Foot>& feet, const std::vector<double>& trust,
-                          const EvenLaplacian& laplacian, double length, double density) {
+std::optional<Eigen::VectorXd> Knowledge(const std::vector<Foot>& feet, const std::vector<double>& trust,
+                                         const EvenLaplacian& laplacian, double length, double density) {
   Eigen::VectorXd deposits = Eigen::VectorXd::Zero(laplacian.stiffness.rows());
   for (size_t i = 0; i < feet.size(); ++i)
     for (int k = 0; k < 3; ++k) deposits[feet[i].face[k]] += trust[i] * feet[i].weights[k] / (laplacian.area * density);
   SparseMatrix spread = laplacian.stiffness * (length * length / laplacian.area);
   for (int v = 0; v < deposits.size(); ++v) spread.coeffRef(v, v) += 1;
-  const Eigen::VectorXd known = Eigen::SimplicialLDLT<SparseMatrix>(spread).solve(deposits);
-  return known.cwiseMax(0).cwiseMin(1);
+  const std::optional<Eigen::MatrixXd> known = SolvePositive(spread, deposits);
+  if (!known) return std::nullopt;
+  return known->cwiseMax(0).cwiseMin(1);
 }
 
 // What L x is to be: the mean curvature normal of the surface as it stands, with the curvature diffused over `length`
 // where it is known and continued from there where it is not. A plate that is bent by nature keeps the bend of its
 // surroundings where no point holds it; a flat one would flatten.
-Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const EvenLaplacian& laplacian, double length,
-                               const Eigen::VectorXd& known, double flatness) {
+std::optional<Eigen::MatrixX3d> RestCurvature(const TriangleMesh& mesh, const EvenLaplacian& laplacian, double length,
+                                              const Eigen::VectorXd& known, double flatness) {
   const int n = static_cast<int>(mesh.vertices.size());
   Eigen::MatrixX3d x(n, 3);
   for (int v = 0; v < n; ++v) x.row(v) = mesh.vertices[v];
@@ -120,9 +122,10 @@ Eigen::MatrixX3d RestCurvature(const TriangleMesh& mesh, const EvenLaplacian& la
     curvature[v] = belief * bend.row(v).dot(normals[v]);
     diffusion.coeffRef(v, v) += belief + flatness;
   }
-  const Eigen::VectorXd smooth = Eigen::SimplicialLDLT<SparseMatrix>(diffusion).solve(curvature);
+  const std::optional<Eigen::MatrixXd> smooth = SolvePositive(diffusion, curvature);
+  if (!smooth) return std::nullopt;
   Eigen::MatrixX3d rest(n, 3);
-  for (int v = 0; v < n; ++v) rest.row(v) = smooth[v] * normals[v];
+  for (int v = 0; v < n; ++v) rest.row(v) = (*smooth)(v, 0) * normals[v];
   return rest;
 }
 
@@ -233,16 +236,16 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     if (round > 0) {
       const double flatness = leading.size() < attachments.size() ? kFlatness : 0;
       const double length = kRestLength / std::sqrt(all / area);
-      const Eigen::VectorXd known = Knowledge(feet, out.trust, laplacian, length, all / area);
-      springs.right +=
-          lambda / laplacian.area * (laplacian.stiffness * RestCurvature(out.mesh, laplacian, length, known, flatness));
+      const std::optional<Eigen::VectorXd> known = Knowledge(feet, out.trust, laplacian, length, all / area);
+      if (!known) return out;  // as below
+      const std::optional<Eigen::MatrixX3d> rest = RestCurvature(out.mesh, laplacian, length, *known, flatness);
+      if (!rest) return out;
+      springs.right += lambda / laplacian.area * (laplacian.stiffness * *rest);
     }
-    const Eigen::SimplicialLDLT<SparseMatrix> solver(system);
-    if (solver.info() != Eigen::Success) return out;  // singular: what stands so far is closed and sound
-    const Eigen::MatrixX3d x = solver.solve(springs.right);
-    if (!x.allFinite()) return out;
+    const std::optional<Eigen::MatrixXd> x = SolvePositive(system, springs.right);
+    if (!x) return out;  // singular: what stands so far is closed and sound
     TriangleMesh next = out.mesh;
-    for (int v = 0; v < n; ++v) next.vertices[v] = x.row(v);
+    for (int v = 0; v < n; ++v) next.vertices[v] = x->row(v);
     if (Diagonal(next) > kMaxGrowth * diagonal || SurfaceArea(next) > std::pow(kMaxGrowth, 2) * raw_area) return out;
     out.mesh = std::move(next);
     if (round + 1 < options.rounds) out.mesh = RemeshEvenly(out.mesh, options.edge_rel * diagonal, 1);
