@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <algorithm>
 #include <utility>
 
 #include "core/parallel.h"
@@ -16,8 +17,8 @@ constexpr size_t kMaxLevels = 12;
 constexpr size_t kMaxRows = 32;  // with the same first voxel, on the coarse bands: more only cost memory
 // The smoother takes down eigenvalues from here to 1. What the next coarser band cannot hold begins at 1/36 for the
 // squared Laplacian, whose waves across one axis are the slowest.
-constexpr float kSmallestSmoothed = 1.f / 30;
-constexpr int kDegree = 4;
+constexpr float kSmallestSmoothed = 1.f / 20;
+constexpr int kDegree = 3;
 
 // The same terms for the coarse band: integrals over the surface, spread over fewer voxels of twice the size.
 BandWeights CoarseWeights(const BandWeights& fine, size_t num_fine, const BandTransfer& transfer) {
@@ -29,6 +30,14 @@ BandWeights CoarseWeights(const BandWeights& fine, size_t num_fine, const BandTr
   coarse.n = transfer.MeanNormals(fine.n);
   transfer.Restrict(fine.pull, coarse.pull);
   return coarse;
+}
+
+double Dot(const std::vector<float>& a, const std::vector<float>& b) {
+  return ParallelSum(a.size(), kGrain, 0.0, [&](size_t begin, size_t end) {
+    double sum = 0;
+    for (size_t i = begin; i < end; ++i) sum += static_cast<double>(a[i]) * b[i];
+    return sum;
+  });
 }
 
 const BandRows& NoRows() {
@@ -43,27 +52,30 @@ struct BandMultigrid::Level {
   BandWeights weights;                     // not used on the finest
   std::unique_ptr<BandOperator> own;
   const BandOperator* matrix = nullptr;
-  std::vector<float> inverse;               // of the absolute row sums
-  std::vector<float> x, b, residual, step;  // of the cycle
-  Eigen::LLT<Eigen::MatrixXf> direct;       // coarsest only
+  std::vector<float> inverse;                        // of the absolute row sums
+  std::vector<float> x, b, residual, step, product;  // of the cycle
+  std::vector<float> first, of_first;  // of Accelerated: what its first cycle made, and the matrix times it
+  Eigen::LLT<Eigen::MatrixXf> direct;  // coarsest only
 
   void Prepare() {
     inverse = matrix->InverseAbsoluteRowSums();
     const size_t n = matrix->topology().size();
-    x.resize(n), b.resize(n), residual.resize(n), step.resize(n);
+    x.resize(n), b.resize(n), residual.resize(n), step.resize(n), product.resize(n);
   }
 
-  // Chebyshev iteration for A x = b on [kSmallestSmoothed, 1]; from x = 0 if `fresh`.
-  void Smooth(bool fresh) {
+  void Clear() {
+    std::fill(x.begin(), x.end(), 0.0F);
+    residual = b;
+  }
+
+  // Chebyshev iteration for A x = b on [kSmallestSmoothed, 1]. Afterwards the residual lacks A · step.
+  void Smooth() {
     constexpr float theta = (1 + kSmallestSmoothed) / 2, delta = (1 - kSmallestSmoothed) / 2, sigma = theta / delta;
     const size_t n = x.size();
-    if (!fresh) matrix->Apply(x, residual);
     ParallelFor(n, kGrain, [&](size_t i) {
-      residual[i] = fresh ? b[i] : b[i] - residual[i];
       step[i] = inverse[i] * residual[i] / theta;
-      x[i] = fresh ? step[i] : x[i] + step[i];
+      x[i] += step[i];
     });
-    std::vector<float>& product = scratch;
     float rho = 1 / sigma;
     for (int k = 1; k < kDegree; ++k) {
       matrix->Apply(step, product);
@@ -77,12 +89,22 @@ struct BandMultigrid::Level {
     }
   }
 
-  void TakeResidual() {
-    matrix->Apply(x, residual);
-    ParallelFor(x.size(), kGrain, [&](size_t i) { residual[i] = b[i] - residual[i]; });
+  void FinishResidual() {
+    matrix->Apply(step, product);
+    ParallelFor(x.size(), kGrain, [&](size_t i) { residual[i] -= product[i]; });
   }
 
-  std::vector<float> scratch;
+  // x plus as much of `step` as lowers the energy most.
+  void TakeBestStep() {
+    matrix->Apply(step, product);
+    const double curvature = Dot(step, product);
+    if (!(curvature > 0)) return;
+    const float length = static_cast<float>(Dot(residual, step) / curvature);
+    ParallelFor(x.size(), kGrain, [&](size_t i) {
+      x[i] += length * step[i];
+      residual[i] -= length * product[i];
+    });
+  }
 };
 
 BandMultigrid::BandMultigrid(const BandOperator& finest)
@@ -143,16 +165,45 @@ void BandMultigrid::Cycle(size_t level) {
       Eigen::Map<Eigen::VectorXf>(fine.x.data(), n) =
           fine.direct.solve(Eigen::Map<const Eigen::VectorXf>(fine.b.data(), n));
     else
-      fine.Smooth(true);
+      fine.Clear(), fine.Smooth();
     return;
   }
   Level& coarse = *levels_[level + 1];
-  fine.Smooth(true);
-  fine.TakeResidual();
+  fine.Clear();
+  fine.Smooth();
+  fine.FinishResidual();
   coarse.transfer->Restrict(fine.residual, coarse.b);
-  Cycle(level + 1);
-  coarse.transfer->AddProlonged(coarse.x, fine.x);
-  fine.Smooth(false);
+  Accelerated(level + 1);
+  std::fill(fine.step.begin(), fine.step.end(), 0.0F);
+  coarse.transfer->AddProlonged(coarse.x, fine.step);
+  fine.TakeBestStep();
+  fine.Smooth();
+}
+
+void BandMultigrid::Accelerated(size_t level) {
+  Cycle(level);
+  if (level + 1 == levels_.size()) return;
+  Level& l = *levels_[level];
+  const size_t n = l.x.size();
+  l.first.swap(l.x);
+  l.x.resize(n), l.of_first.resize(n);
+  l.matrix->Apply(l.first, l.of_first);
+  const double curvature = Dot(l.first, l.of_first);
+  if (!(curvature > 0)) {
+    l.x.swap(l.first);
+    return;
+  }
+  const double length = Dot(l.first, l.b) / curvature;
+  ParallelFor(n, kGrain, [&](size_t i) { l.b[i] -= static_cast<float>(length) * l.of_first[i]; });
+  Cycle(level);
+  // The second direction made conjugate to the first.
+  const double along = Dot(l.x, l.of_first) / curvature;
+  ParallelFor(n, kGrain, [&](size_t i) { l.x[i] -= static_cast<float>(along) * l.first[i]; });
+  l.matrix->Apply(l.x, l.product);
+  const double second = Dot(l.x, l.product);
+  const double more = second > 0 ? Dot(l.x, l.b) / second : 0;
+  ParallelFor(n, kGrain,
+              [&](size_t i) { l.x[i] = static_cast<float>(length) * l.first[i] + static_cast<float>(more) * l.x[i]; });
 }
 
 void BandMultigrid::Apply(const std::vector<double>& r, std::vector<double>& z) {

@@ -128,13 +128,13 @@ SolveReport BandSystem::Minimize(const std::vector<double>& rhs, int max_iterati
     });
     multigrid_->Apply(r, z);
     const double next = Dot(r, z);
-    // Polak and Ribière's form, which forgives that the cycle rounds to float.
+    // Polak and Ribière's form: the cycle is not a linear map.
     const double ratio = -step * Dot(q, z) / rz;
     ParallelFor(n, kGrain, [&](size_t i) { p[i] = z[i] + ratio * p[i]; });
     rz = next;
     ++report.iterations;
   }
-  report.relative_residual = first > 0 ? std::sqrt(std::max(rz, 0.0) / first) : 0;
+  report.relative_residual = first > 0 ? std::sqrt(std::abs(rz) / first) : 0;
   return report;
 }
 
