@@ -37,10 +37,10 @@ BandOperator::BandOperator(const BandTopology& topology, const BandWeights& weig
       interior_(topology.size()),
       present_(topology.size()),
       crowded_(rows_.size() > kCrowd * topology.size()),
-      differences_(topology.size()),
       weighted_(topology.size() + 1),
       row_products_(rows_.size()) {
   const size_t n = topology.size();
+  neighbors_with_.resize(n);
   GLINT_CHECK_EQ(weights_.n.size(), n);
   GLINT_CHECK_EQ(weights_.pull.size(), n);
   ParallelFor(n, kGrain, [&](size_t i) {
@@ -51,6 +51,12 @@ BandOperator::BandOperator(const BandTopology& topology, const BandWeights& weig
     for (int k = 0; k < 3; ++k)
       if (topology.Neighbor(i, kAxisB[k], 1) != kNone && topology.Diagonal(i, kAxisA[k], 1, kAxisB[k], 1) != kNone)
         present_[i] |= 8 << k;
+  });
+  ParallelFor(n, kGrain, [&](size_t i) {
+    for (int side = 0; side < 6; ++side) {
+      const int32_t v = topology.Neighbor(i, side / 2, side % 2);
+      for (int k = 0; v != kNone && k < 6; ++k) neighbors_with_[i][k] += present_[v] >> k & 1;
+    }
   });
   by_voxel_begin_.assign(n + 1, 0);
   for (int32_t v : rows_.voxel) ++by_voxel_begin_[v + 1];
@@ -69,14 +75,17 @@ BandOperator::BandOperator(const BandTopology& topology, const BandWeights& weig
 // Without branches: what is not there is read at the voxel itself and then multiplied by zero.
 template <class T>
 void BandOperator::TakeDifferences(const std::vector<T>& phi, std::vector<Differences>& differences) const {
-  ParallelFor(topology_.size(), kGrain, [&](size_t i) {
+  const size_t n = topology_.size();
+  differences.resize(n + 1);
+  differences[n] = {};
+  ParallelFor(n, kGrain, [&](size_t i) {
     const int32_t self = static_cast<int32_t>(i);
     const auto or_self = [self](int32_t v) { return v < 0 ? self : v; };
     const auto& flag = kFlags[present_[i]];
     const T here = phi[i];
     std::array<int32_t, 3> next;
     std::array<T, 3> ahead;
-    Differences d{};
+    Differences& d = differences[i];  // in place: what is put together elsewhere and copied costs twice as much
     T along_normal = 0;
     for (int axis = 0; axis < 3; ++axis) {
       next[axis] = or_self(topology_.Neighbor(i, axis, 1));
@@ -90,7 +99,7 @@ void BandOperator::TakeDifferences(const std::vector<T>& phi, std::vector<Differ
       d[3 + k] = flag[3 + k] * kMixed * static_cast<float>(here + phi[ab] - ahead[kAxisA[k]] - ahead[kAxisB[k]]);
     }
     d[6] = flag[6] * static_cast<float>(along_normal);
-    differences[i] = d;
+    d[7] = 0;
   });
 }
 
@@ -102,32 +111,34 @@ void BandOperator::WeighDifferences(const std::vector<Differences>& differences,
   const float smoothness = static_cast<float>(weights_.smoothness), normal = static_cast<float>(weights_.normal);
   const float change = static_cast<float>(weights_.bend_change);
   weighted[0] = {};
-  ParallelFor(topology_.size(), kGrain, [&](size_t i) {
-    const Differences& d = differences[i];
-    Differences sum{};  // of the differences to the neighbours'
-    if (change > 0)
+  const size_t n = topology_.size();
+  const auto vector = [&](const Differences& d) { return Eigen::Map<const Eigen::Array<float, 8, 1>>(d.data()); };
+  ParallelFor(n, kGrain, [&](size_t i) {
+    const auto d = vector(differences[i]);
+    Differences w;
+    Eigen::Map<Eigen::Array<float, 8, 1>> sum(w.data());
+    sum = smoothness * d;
+    if (change > 0) {
+      // Differences that are not there are zero, so that only how many of the neighbours have one needs counting.
+      Eigen::Array<float, 8, 1> around = Eigen::Array<float, 8, 1>::Zero();
       for (int side = 0; side < 6; ++side) {
         const int32_t v = topology_.Neighbor(i, side / 2, side % 2);
-        const size_t other = v < 0 ? i : static_cast<size_t>(v);
-        const auto& both = kFlags[present_[i] & present_[other]];
-        const Differences& next = differences[other];
-        for (int k = 0; k < 8; ++k) sum[k] += both[k] * (d[k] - next[k]);
+        around += vector(differences[v < 0 ? n : static_cast<size_t>(v)]);
       }
-    Differences w;
-    for (int k = 0; k < 8; ++k) w[k] = smoothness * d[k] + change * sum[k];
-    weighted[i + 1] = LayOut(w, normal * d[6], i);
+      const auto count = Eigen::Map<const Eigen::Array<uint8_t, 8, 1>>(neighbors_with_[i].data()).cast<float>();
+      sum += change * (count * d - vector(kFlags[present_[i]]) * around);
+    }
+    LayOut(w, normal * d[6], i, weighted[i + 1]);
   });
 }
 
-BandOperator::Weighted BandOperator::LayOut(const Differences& weighted_bends, float weighted_normal, size_t i) const {
-  Weighted out;
+void BandOperator::LayOut(const Differences& weighted_bends, float weighted_normal, size_t i, Weighted& out) const {
   for (int axis = 0; axis < 3; ++axis) {
     const float along = 0.5f * weights_.n[i][axis] * weighted_normal;
     out.from_minus[axis] = weighted_bends[axis] - along;
     out.from_plus[axis] = weighted_bends[axis] + along;
     out.mixed[axis] = kMixed * weighted_bends[3 + axis];
   }
-  return out;
 }
 
 void BandOperator::WeighNoise(uint64_t seed, std::vector<Weighted>& weighted) const {
@@ -149,7 +160,7 @@ void BandOperator::WeighNoise(uint64_t seed, std::vector<Weighted>& weighted) co
         const auto& both = kFlags[present_[i] & present_[v]];
         for (int k = 0; k < 6; ++k) w[k] += (side == 1 ? change : -change) * both[k] * Sign(pair, 6 * (axis + 1) + k);
       }
-    weighted[i + 1] = LayOut(w, normal * flag[6] * Sign(bits, 24), i);
+    LayOut(w, normal * flag[6] * Sign(bits, 24), i, weighted[i + 1]);
   });
 }
 

@@ -27,7 +27,7 @@ struct BandWeights {
 };
 
 // A difference that needs a voxel off the band is left out: natural boundary conditions.
-// Work: about 250 flops a voxel and product, and those of the rows, but where they crowd; memory 73 bytes a voxel.
+// Work: about 250 flops a voxel and product, and those of the rows, but where they crowd; memory 81 bytes a voxel.
 class BandOperator {
  public:
   // Three second differences, three mixed ones (times √2), the derivative along n, all times powers of h; and a zero,
@@ -64,6 +64,7 @@ class BandOperator {
   // The matrix itself, for small bands.
   Eigen::MatrixXf Dense() const;
 
+  // One more than voxels: the last are those of the voxel that is not there, zeros.
   template <class T>
   void TakeDifferences(const std::vector<T>& phi, std::vector<Differences>& differences) const;
   // What the transposed differences are taken of: each difference times its weights, laid out by who needs it. Slot 0
@@ -87,7 +88,7 @@ class BandOperator {
   std::vector<float> InverseAbsoluteRowSums() const;
 
  private:
-  Weighted LayOut(const Differences& weighted_bends, float weighted_normal, size_t i) const;
+  void LayOut(const Differences& weighted_bends, float weighted_normal, size_t i, Weighted& out) const;
   RowGram MultipliedOut() const;
   double AbsoluteRowSum(size_t i, const std::vector<double>& row_sums) const;
 
@@ -95,7 +96,8 @@ class BandOperator {
   const BandWeights& weights_;
   BandRows rows_;
   std::vector<uint8_t> interior_;
-  std::vector<uint8_t> present_;  // bit k: difference k has all its voxels
+  std::vector<uint8_t> present_;                        // bit k: difference k has all its voxels
+  std::vector<std::array<uint8_t, 8>> neighbors_with_;  // of the six, how many have difference k; of k < 6
   // Rows by voxel, so that their transposed product is a gather.
   std::vector<size_t> by_voxel_begin_;
   std::vector<int32_t> by_voxel_row_;

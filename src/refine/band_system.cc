@@ -25,7 +25,7 @@ double Dot(const std::vector<double>& a, const std::vector<double>& b) {
 BandSystem::BandSystem(const Band& band, BandWeights weights, BandRows rows)
     : weights_(std::move(weights)), operator_(band, weights_, std::move(rows)) {
   GLINT_CHECK_EQ(weights_.pull_target.size(), band.size());
-  target_differences_.resize(band.size());
+  target_differences_.resize(band.size() + 1);
   if (!weights_.reference.empty()) {
     GLINT_CHECK_EQ(weights_.reference.size(), band.size());
     operator_.TakeDifferences(weights_.reference, target_differences_);
@@ -60,7 +60,7 @@ void BandSystem::BuildRightHandSide() {
 }
 
 double BandSystem::Energy(const std::vector<double>& phi) const {
-  std::vector<BandOperator::Differences> differences(phi.size());
+  std::vector<BandOperator::Differences> differences;
   operator_.TakeDifferences(phi, differences);
   ParallelFor(phi.size(), kGrain, [&](size_t i) {
     for (int k = 0; k < 7; ++k) differences[i][k] -= target_differences_[i][k];
