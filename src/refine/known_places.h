@@ -24,10 +24,11 @@ class KnownPlaces {
 
   // Sparse points, then those from texture.
   const std::vector<SurfacePoint>& points() const { return points_; }
+  bool uses_outlines() const { return !outline_.empty(); }
   size_t num_sparse() const { return num_sparse_; }
   // What anchors the bundle: the points, and where the outlines show the surface.
   std::vector<SurfacePoint> Anchors(const LevelSet& field) const;
-  // Where the outlines' rays touch the field's surface; none if options.use_outlines is false.
+  // Where the outlines' rays touch the field's surface; none if they are not used.
   std::vector<OrientedPoint> Outline(const LevelSet& field) const { return OutlineContacts(outline_, field); }
 
  private:
