@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <Eigen/CholmodSupport>
+#include <new>
 
 namespace glint {
 namespace {
@@ -25,8 +26,15 @@ std::optional<Eigen::MatrixXd> SolvePositive(const Eigen::SparseMatrix<double>& 
   const WithoutTeams scope;
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver;
   solver.cholmod().print = 0;  // it would write to standard output
-  solver.compute(a);
-  if (solver.info() != Eigen::Success) return std::nullopt;
+  // Eigen goes on with the factor that there is not where the analysis fails.
+  const auto failed = [&] {
+    if (solver.cholmod().status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+    return solver.cholmod().status < CHOLMOD_OK;
+  };
+  solver.analyzePattern(a);
+  if (failed()) return std::nullopt;
+  solver.factorize(a);
+  if (failed() || solver.info() != Eigen::Success) return std::nullopt;
   Eigen::MatrixXd x = solver.solve(right);
   if (solver.info() != Eigen::Success || !x.allFinite()) return std::nullopt;
   return x;
