@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/square.h"
 #include "highlights/brightness.h"
 
 namespace glint {
@@ -45,7 +46,7 @@ std::optional<BallCircle> FitCircle(const std::vector<Eigen::Vector2d>& points, 
     for (size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector2d out = (points[i] - circle.center_px).normalized();
       const Eigen::Vector3d row(out.x(), out.y(), 1);
-      const double weight = 1 / (1 + std::pow(errors[i] / scale, 2));
+      const double weight = 1 / (1 + Square(errors[i] / scale));
       a += weight * row * row.transpose();
       b += weight * ((points[i] - circle.center_px).norm() - circle.radius_px) * row;
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/median.h"
+#include "core/square.h"
 
 namespace glint {
 namespace {
@@ -43,7 +44,7 @@ double ChanceSupport(const FoundLight& f, const std::vector<FoundLight>& lights,
   double most = 0;
   for (const FoundLight& crowd : lights)
     if (crowd.normal_sigma_deg > options.max_normal_sigma_deg)
-      most = std::max(most, 2 * crowd.support * std::pow(f.normal_sigma_deg / crowd.normal_sigma_deg, 2));
+      most = std::max(most, 2 * crowd.support * Square(f.normal_sigma_deg / crowd.normal_sigma_deg));
   return most;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/median.h"
+#include "core/square.h"
 #include "highlights/lobe_profile.h"
 #include "highlights/mirror_test.h"
 #include "light/light_covariance.h"
@@ -59,7 +60,7 @@ void MeasureSize(const Scene& scene, const SeedSurface& surface, const std::vect
   if (light.light.type == LightType::kPoint)
     light.covariance += sigma * sigma * Eigen::Matrix3d::Identity();
   else
-    light.covariance += std::pow(sigma * M_PI / 180, 2) *
+    light.covariance += Square(sigma * M_PI / 180) *
                         (Eigen::Matrix3d::Identity() - light.light.vector * light.light.vector.transpose());
   light.light.sigma = LargestSigma(light.covariance, light.light);
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/square.h"
+
 namespace glint {
 namespace {
 
@@ -45,7 +47,7 @@ const std::vector<Row>& Table() {
     std::vector<Row> rows;
     for (double disc = 0; disc <= 8; disc += disc < 2 ? 0.2 : 1) {
       const double half = RadiusAt(0.5, disc);
-      const Row row{std::pow(RadiusAt(0.8, disc) / half, 2), disc / half};
+      const Row row{Square(RadiusAt(0.8, disc) / half), disc / half};
       if (rows.empty() || (row.flatness > rows.back().flatness && row.share > rows.back().share)) rows.push_back(row);
     }
     return rows;

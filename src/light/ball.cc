@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/median.h"
+#include "core/square.h"
 
 namespace glint {
 namespace {
@@ -34,7 +35,7 @@ std::optional<Ball> BallFromOutline(const Camera& camera, const std::vector<Eige
     std::vector<double> errors;
     for (const Eigen::Vector3d& ray : rays) errors.push_back(std::abs(ray.dot(w) - 1));
     const double scale = std::max(3 * Median(errors), 1e-12);
-    for (size_t i = 0; i < rays.size(); ++i) weights[i] = 1 / (1 + std::pow(errors[i] / scale, 2));
+    for (size_t i = 0; i < rays.size(); ++i) weights[i] = 1 / (1 + Square(errors[i] / scale));
   }
   const double cos_alpha = 1 / w.norm();
   if (!(cos_alpha < 1)) return std::nullopt;

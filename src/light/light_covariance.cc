@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "core/square.h"
 #include "light/light_adjust.h"
 
 namespace glint {
@@ -181,7 +182,7 @@ double HalfVectorSigma(const std::vector<LightObservation>& of_light, const Eige
   double squares = 0;
   for (const LightObservation& o : of_light) {
     const Eigen::MatrixXd change = HalfVectorJacobian(o, light, diagonal).leftCols(p) * coordinates;
-    squares += std::pow(LargestSigma(change * covariance * change.transpose()), 2);
+    squares += Square(LargestSigma(change * covariance * change.transpose()));
   }
   return std::sqrt(squares / std::max<double>(static_cast<double>(of_light.size()), 1));
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/check.h"
+#include "core/square.h"
 #include "light/light_adjust.h"
 
 namespace glint {
@@ -96,7 +97,7 @@ double LightMixtureFit::Complexity(const Light& light) const {
   return 3 * log_n + (light.vector / (flash_spread_ * diagonal_)).squaredNorm();
 }
 
-double LightMixtureFit::Prior(double sigma) const { return std::pow(sigma / flash_spread_, 2); }
+double LightMixtureFit::Prior(double sigma) const { return Square(sigma / flash_spread_); }
 
 double LightMixtureFit::Expect(LightMixture& m) const {
   const size_t n = observations_.size(), k = m.lights.size();

@@ -9,6 +9,7 @@
 #include "core/median.h"
 #include "core/parallel.h"
 #include "core/random_bits.h"
+#include "core/square.h"
 #include "geometry/closest_point.h"
 #include "metrics/surface_samples.h"
 
@@ -100,7 +101,7 @@ Vector7d Step(const Surfaces& surfaces, const std::vector<Pair>& pairs, bool wit
     const Vector3d arm = (pair.moving - surfaces.center()) / surfaces.diagonal();
     Vector7d row;
     row << arm.cross(pair.normal), pair.normal, with_scale ? pair.normal.dot(arm) : 0.0;
-    const double weight = 1 / (1 + std::pow(pair.distance / sigma, 2));
+    const double weight = 1 / (1 + Square(pair.distance / sigma));
     a += weight * row * row.transpose();
     b += weight * row * pair.normal.dot(pair.fixed - pair.moving) / surfaces.diagonal();
   }

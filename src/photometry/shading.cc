@@ -7,6 +7,7 @@
 
 #include "core/median.h"
 #include "core/parallel.h"
+#include "core/square.h"
 #include "photometry/materials.h"
 #include "photometry/shadows.h"
 
@@ -148,7 +149,7 @@ Fit FitMaterial(const std::vector<Equation>& equations, const std::vector<Surfac
     const double middle = Median(predicted);
     for (size_t i = 0; i < equations.size(); ++i) {
       const double ratio = off[i] / (3 * fit.scatter);
-      weights[i] = 1 / std::pow((1 + ratio * ratio) * fit.Scale(predicted[i]), 2);
+      weights[i] = 1 / Square((1 + ratio * ratio) * fit.Scale(predicted[i]));
       predicted[i] = std::abs(predicted[i] - middle) / fit.Scale(middle);
     }
     fit.contrast = 1.4826 * Median(predicted);

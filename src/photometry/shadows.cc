@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/square.h"
+
 namespace glint {
 namespace {
 
@@ -31,7 +33,7 @@ std::optional<Eigen::Vector3d> Shadows::Irradiance(const Eigen::Vector3d& x, con
   const int hidden = NumHidden(x, normal, x + distance * to_light);
   if (hidden == kRays) return Eigen::Vector3d::Zero();
   if (hidden > 0) return std::nullopt;
-  return near ? Eigen::Vector3d(to_light * std::pow(Distance(light, cam_from_world, center_) / distance, 2)) : to_light;
+  return near ? Eigen::Vector3d(to_light * Square(Distance(light, cam_from_world, center_) / distance)) : to_light;
 }
 
 int Shadows::NumHidden(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, const Eigen::Vector3d& lamp) const {

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "refine/band_transfer.h"
+#include "refine/dot.h"
 
 namespace glint {
 namespace {
@@ -30,14 +31,6 @@ BandWeights CoarseWeights(const BandWeights& fine, size_t num_fine, const BandTr
   coarse.n = transfer.MeanNormals(fine.n);
   transfer.Restrict(fine.pull, coarse.pull);
   return coarse;
-}
-
-double Dot(const std::vector<float>& a, const std::vector<float>& b) {
-  return ParallelSum(a.size(), kGrain, 0.0, [&](size_t begin, size_t end) {
-    double sum = 0;
-    for (size_t i = begin; i < end; ++i) sum += static_cast<double>(a[i]) * b[i];
-    return sum;
-  });
 }
 
 const BandRows& NoRows() {

@@ -6,19 +6,13 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "core/random_bits.h"
+#include "core/square.h"
+#include "refine/dot.h"
 
 namespace glint {
 namespace {
 
 constexpr size_t kGrain = 1 << 13;
-
-double Dot(const std::vector<double>& a, const std::vector<double>& b) {
-  return ParallelSum(a.size(), kGrain, 0.0, [&](size_t begin, size_t end) {
-    double sum = 0;
-    for (size_t i = begin; i < end; ++i) sum += a[i] * b[i];
-    return sum;
-  });
-}
 
 }  // namespace
 
@@ -67,7 +61,7 @@ double BandSystem::Energy(const std::vector<double>& phi) const {
   });
   double energy = ParallelSum(phi.size(), kGrain, 0.0, [&](size_t begin, size_t end) {
     double sum = operator_.DifferencesEnergy(differences, begin, end);
-    for (size_t i = begin; i < end; ++i) sum += weights_.pull[i] * std::pow(phi[i] - weights_.pull_target[i], 2);
+    for (size_t i = begin; i < end; ++i) sum += weights_.pull[i] * Square(phi[i] - weights_.pull_target[i]);
     return sum;
   });
   for (size_t r = 0; r < rows().size(); ++r) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "core/square.h"
 
 namespace glint {
 namespace {
@@ -21,7 +22,7 @@ void AddConfidence(const SurfaceDeviation& deviation, TriangleMesh& mesh) {
   mesh.confidence.resize(n);
   for (size_t v = 0; v < n; ++v) {
     sigma_normal_deg[v] = static_cast<float>(deviation.normal[v] * kDegrees);
-    mesh.confidence[v] = static_cast<float>(1 / (1 + std::pow(sigma_normal_deg[v] / kHalfConfidenceDeg, 2)));
+    mesh.confidence[v] = static_cast<float>(1 / (1 + Square(sigma_normal_deg[v] / kHalfConfidenceDeg)));
   }
   mesh.scalars.emplace_back("sigma_position_rel", deviation.position);
   mesh.scalars.emplace_back("sigma_normal_deg", std::move(sigma_normal_deg));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "core/square.h"
 #include "refine/band_system.h"
 #include "refine/explained.h"
 #include "refine/gaps.h"
@@ -81,7 +82,7 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
   const double area = input.surface_area / static_cast<double>(band.size());  // a voxel's share of the surface integral
   BandWeights weights;
   weights.smoothness = options.smoothness * area / std::pow(h, 4);
-  weights.bend_change = weights.smoothness * std::pow(options.smoothness_length_rel / h, 2);
+  weights.bend_change = weights.smoothness * Square(options.smoothness_length_rel / h);
   weights.normal = options.normal_weight * area / (h * h);
   weights.n.resize(band.size());
   weights.pull.resize(band.size());
@@ -93,7 +94,7 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
   static const std::vector<SurfacePoint> kNoPoints;
   const Gaps gaps(options.point_weight > 0 ? input.points : kNoPoints, contacts,
                   options.outline_weight > 0 ? input.outline : kNone);
-  const double held = 1 / std::pow(kHeldSigmaVoxels * kHeldLengthVoxels * h * h, 2);
+  const double held = 1 / Square(kHeldSigmaVoxels * kHeldLengthVoxels * h * h);
   const double background = input.seed.half_width_voxels() * input.seed.voxel_size();
   ParallelFor(band.size(), 1 << 12, [&](size_t i) {
     const Eigen::Vector3d x = band.Position(i);
@@ -103,7 +104,7 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
     weights.n[i] = normal.cast<float>();
     const bool hold = input.unresolved && input.unresolved->Near(x);
     const double alike = std::max(options.seed_length_rel, kGapLengths * gaps.At(x, normal, kWidestGap));
-    const double mu = 1 / std::pow(options.seed_sigma_rel * alike, 2);
+    const double mu = 1 / Square(options.seed_sigma_rel * alike);
     // m of DESIGN 3.4: near 1 where no contact reaches, near 0 where one does.
     const double pull = hold ? held : mu * static_cast<float>(1 - explained.At(x, normal));
     const double value = input.seed.Value(x);

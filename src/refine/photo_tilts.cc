@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/square.h"
+
 namespace glint {
 
 namespace {
@@ -76,7 +78,7 @@ void PhotoTilts::Take(const std::vector<Tilt>& tilts, double weight) {
   for (Tilt tilt : tilts) {
     tilt.position = frame_.FromWorld(tilt.position);
     tilt.radius_world *= frame_.scale;
-    tilt.share = weight * std::min(1.0, std::pow(kSpacingRel / options_.length_rel, 2));
+    tilt.share = weight * std::min(1.0, Square(kSpacingRel / options_.length_rel));
     tilts_.push_back(tilt);
   }
 }

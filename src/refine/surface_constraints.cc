@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/square.h"
+
 namespace glint {
 namespace {
 
@@ -91,14 +93,14 @@ void SurfaceConstraints::AddContacts(const std::vector<OrientedPoint>& contacts,
   for (size_t i = 0; i < contacts.size(); ++i) {
     const OrientedPoint& contact = contacts[i];
     size_t first = rows_.size();
-    if (!AddGradientRows(band_, contact, weight / std::pow(contact.sigma_normal, 2), rows_)) {
+    if (!AddGradientRows(band_, contact, weight / Square(contact.sigma_normal), rows_)) {
       ++contacts_off_band_;
       continue;
     }
     EndGroup(first, false, static_cast<int>(i));
     first = rows_.size();
     if (contact.sigma_position > 0 &&
-        AddValueRow(band_, contact.bundle_position, weight / std::pow(contact.sigma_position, 2), rows_))
+        AddValueRow(band_, contact.bundle_position, weight / Square(contact.sigma_position), rows_))
       EndGroup(first, false);
   }
 }
@@ -107,7 +109,7 @@ void SurfaceConstraints::AddPoints(const std::vector<SurfacePoint>& points, doub
   if (weight == 0) return;
   for (const SurfacePoint& point : points) {
     const size_t first = rows_.size();
-    if (AddValueRow(band_, point.position, weight / std::pow(point.sigma, 2), rows_))
+    if (AddValueRow(band_, point.position, weight / Square(point.sigma), rows_))
       EndGroup(first, true);
     else
       ++points_off_band_;
@@ -118,8 +120,8 @@ void SurfaceConstraints::AddOutline(const std::vector<OrientedPoint>& touched, d
   if (weight == 0) return;
   for (const OrientedPoint& place : touched) {
     const size_t first = rows_.size();
-    AddValueRow(band_, place.bundle_position, weight / std::pow(place.sigma_position, 2), rows_);
-    AddGradientRows(band_, place, weight / std::pow(place.sigma_normal, 2), rows_);
+    AddValueRow(band_, place.bundle_position, weight / Square(place.sigma_position), rows_);
+    AddGradientRows(band_, place, weight / Square(place.sigma_normal), rows_);
     EndGroup(first, true);
   }
 }

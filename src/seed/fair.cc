@@ -9,6 +9,7 @@
 
 #include "core/check.h"
 #include "core/median.h"
+#include "core/square.h"
 #include "geometry/closest_point.h"
 #include "geometry/edge_topology.h"
 #include "geometry/pseudo_normals.h"
@@ -86,7 +87,7 @@ std::vector<double> Trust(const std::vector<Attachment>& attachments, const std:
   for (size_t i = 0; i < feet.size(); ++i) {
     const double range = kTrustedRange * attachments[i].credit * std::max(typical, attachments[i].sigma);
     const double r = feet[i].distance / range;
-    trust.push_back(1 / std::pow(1 + r * r, 2));
+    trust.push_back(1 / Square(1 + r * r));
   }
   return trust;
 }
@@ -215,7 +216,7 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     if (round > 0) out.trust = Trust(attachments, feet, min_sigma);
     std::vector<double> weights, leading_weights;
     for (size_t i = 0; i < attachments.size(); ++i) {
-      weights.push_back(out.trust[i] / std::pow(std::max(attachments[i].sigma, min_sigma), 2));
+      weights.push_back(out.trust[i] / Square(std::max(attachments[i].sigma, min_sigma)));
       if (!attachments[i].extra || leading.size() == attachments.size()) leading_weights.push_back(weights.back());
     }
     // A thin plate on springs of density ρw bends over ℓ = (λ/ρw)^¼; ℓ = smoothing · ρ^−½.
@@ -246,7 +247,7 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     if (!x) return out;  // singular: what stands so far is closed and sound
     TriangleMesh next = out.mesh;
     for (int v = 0; v < n; ++v) next.vertices[v] = x->row(v);
-    if (Diagonal(next) > kMaxGrowth * diagonal || SurfaceArea(next) > std::pow(kMaxGrowth, 2) * raw_area) return out;
+    if (Diagonal(next) > kMaxGrowth * diagonal || SurfaceArea(next) > Square(kMaxGrowth) * raw_area) return out;
     out.mesh = std::move(next);
     if (round + 1 < options.rounds) out.mesh = RemeshEvenly(out.mesh, options.edge_rel * diagonal, 1);
   }

@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/median.h"
+#include "core/square.h"
 #include "seed/scene_layout.h"
 
 namespace glint {
@@ -55,7 +56,7 @@ Focus FindFocus(const Scene& scene, const std::vector<uint8_t>& use) {
     std::vector<double> off(axes.size());
     for (size_t v = 0; v < axes.size(); ++v) off[v] = (focus.center - axes[v].center).cross(axes[v].direction).norm();
     const double scale = std::max(Median(off), std::numeric_limits<double>::min());
-    for (size_t v = 0; v < axes.size(); ++v) weights[v] = 1 / (1 + std::pow(off[v] / (2 * scale), 2));
+    for (size_t v = 0; v < axes.size(); ++v) weights[v] = 1 / (1 + Square(off[v] / (2 * scale)));
   }
   std::vector<double> distances;
   for (const Axis& axis : axes) distances.push_back((focus.center - axis.center).norm());

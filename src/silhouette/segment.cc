@@ -7,6 +7,7 @@
 #include <opencv2/imgproc/detail/gcgraph.hpp>
 #include <vector>
 
+#include "core/square.h"
 #include "silhouette/lab.h"
 
 namespace glint::internal {
@@ -46,7 +47,7 @@ cv::Mat ColorLabels(const cv::Mat& lab) {
       double least = 1e30;
       for (int k = 0; k < count; ++k) {
         const float* m = centers.ptr<float>(k);
-        const double d = std::pow(c[0] - m[0], 2) + std::pow(c[1] - m[1], 2) + std::pow(c[2] - m[2], 2);
+        const double d = Square(c[0] - m[0]) + Square(c[1] - m[1]) + Square(c[2] - m[2]);
         if (d < least) {
           least = d;
           labels.at<uint8_t>(y, x) = static_cast<uint8_t>(k);

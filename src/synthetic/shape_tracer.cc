@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "core/square.h"
 #include "synthetic/ray_march.h"
 
 namespace glint {
@@ -63,7 +64,7 @@ void ShapeTracer::Measure() {
 // The distance between boxes splits into a sum over the axes: one sweep an axis over squared distances.
 void ShapeTracer::MeasureClearance() {
   std::vector<float> gap(kSize);
-  for (int d = 0; d < kSize; ++d) gap[d] = static_cast<float>(std::pow(std::max(d - 1, 0) * cell_, 2));
+  for (int d = 0; d < kSize; ++d) gap[d] = static_cast<float>(Square(std::max(d - 1, 0) * cell_));
   const size_t strides[3] = {1, kSize, static_cast<size_t>(kSize) * kSize};
   for (int axis = 0; axis < 3; ++axis) {
     const size_t along = strides[axis], u = strides[(axis + 1) % 3], v = strides[(axis + 2) % 3];

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/square.h"
 #include "synthetic/stage.h"
 
 namespace glint {
@@ -229,8 +230,7 @@ Stage MakeStage(const SyntheticOptions& options) {
   if (options.light_kind == "flash")
     for (StageLight& light : stage.lights) light.reference_distance = stage.views[0].Center().norm();
   // Stop down for very bright highlights, as far as the rest of the picture bears it.
-  const double peak =
-      stage.gloss.reflectance.maxCoeff() / (4 * std::pow(stage.gloss.alpha, 2)) * stage.lights[0].irradiance;
+  const double peak = stage.gloss.reflectance.maxCoeff() / (4 * Square(stage.gloss.alpha)) * stage.lights[0].irradiance;
   stage.exposure = std::clamp(12 / peak, 0.5, 1.0);
   return stage;
 }

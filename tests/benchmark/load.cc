@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "colmap/model.h"
+#include "core/square.h"
 #include "highlights/view_brightness.h"
 #include "io/mesh_io.h"
 #include "io/project_images.h"
@@ -74,7 +75,7 @@ cv::Mat Photograph(int width, int height, int num_blobs, unsigned seed) {
     const int reach = static_cast<int>(4 * sigma) + 1;
     for (int y = std::max(0, static_cast<int>(cy) - reach); y < std::min(height, static_cast<int>(cy) + reach); ++y)
       for (int x = std::max(0, static_cast<int>(cx) - reach); x < std::min(width, static_cast<int>(cx) + reach); ++x) {
-        const double glow = 300 * std::exp(-0.5 * (std::pow(x - cx, 2) + std::pow(y - cy, 2)) / (sigma * sigma));
+        const double glow = 300 * std::exp(-0.5 * (Square(x - cx) + Square(y - cy)) / (sigma * sigma));
         for (int c = 0; c < 3; ++c) {
           uchar& value = image.at<cv::Vec3b>(y, x)[c];
           value = cv::saturate_cast<uchar>(value + glow);

@@ -9,6 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "core/square.h"
+
 namespace glint {
 namespace {
 
@@ -37,7 +39,7 @@ cv::Mat Render(const Lobe& lobe, const Eigen::Vector3d& body, const Eigen::Vecto
       double specular = 0;
       for (int s = 0; s < 9; ++s) {
         const Eigen::Vector2d d = turn * (Eigen::Vector2d(x + (s % 3 + 0.5) / 3, y + (s / 3 + 0.5) / 3) - lobe.px);
-        const double q = 0.41421356 * (std::pow(d.x() / lobe.major_px, 2) + std::pow(d.y() / lobe.minor_px, 2));
+        const double q = 0.41421356 * (Square(d.x() / lobe.major_px) + Square(d.y() / lobe.minor_px));
         specular += lobe.amplitude / ((1 + q) * (1 + q)) / 9;
       }
       for (int c = 0; c < 3; ++c) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/square.h"
+
 namespace glint::internal {
 namespace {
 
@@ -43,8 +45,7 @@ TEST(LobeKernel, RightHandSideIsTheCostsGradient) {
   constexpr float kScale = 1.5f;
   const LobeRows rows = Rows(samples, Somewhere());
   double plain = 0;
-  for (size_t i = 0; i < samples.count; ++i)
-    plain += std::log1p(std::pow(rows.Row(LobeRows::kResidual)[i] / kScale, 2));
+  for (size_t i = 0; i < samples.count; ++i) plain += std::log1p(Square(rows.Row(LobeRows::kResidual)[i] / kScale));
   EXPECT_NEAR(LobeCost(samples.count, rows, kScale), kScale * kScale * plain, 1e-3 * plain);
   for (const float least : {1.f, 0.2f}) {
     LobeEquations equations;

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/square.h"
 #include "refine/band_transfer.h"
 #include "refine/row_gram.h"
 #include "refine/row_sample.h"
@@ -167,7 +168,7 @@ Problem LevelSetProblem(const Band& band) {
   const double h = band.voxel_size(), area = 4 * M_PI / static_cast<double>(band.size());
   Problem problem{Weights(band), {}};
   problem.weights.smoothness = 30 * area / std::pow(h, 4);
-  problem.weights.bend_change = problem.weights.smoothness * std::pow(0.2 / h, 2);
+  problem.weights.bend_change = problem.weights.smoothness * Square(0.2 / h);
   problem.weights.normal = 10 * area / (h * h);
   problem.weights.pull.assign(band.size(), static_cast<float>(1e4 * area));
   problem.weights.pull_target = problem.weights.reference = band.phi();

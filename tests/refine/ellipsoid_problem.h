@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/square.h"
 #include "refine/refine.h"
 #include "tests/support/ellipsoid_scene.h"
 #include "tests/support/shapes.h"
@@ -42,7 +43,7 @@ inline Eigen::Matrix2d BlobMoments(const Ellipsoid& shape, const View& unit_view
   Eigen::Matrix<double, 3, 2> jacobian;
   for (int k = 0; k < 2; ++k)
     jacobian.col(k) = (turn(px + Eigen::Vector2d::Unit(k)) - turn(px - Eigen::Vector2d::Unit(k))) / 2;
-  return std::pow(1.5 * M_PI / 180, 2) * (jacobian.transpose() * jacobian).inverse();
+  return Square(1.5 * M_PI / 180) * (jacobian.transpose() * jacobian).inverse();
 }
 
 // A seed that is dented and faceted by a few percent, exact highlights, sparse points with a little noise.
