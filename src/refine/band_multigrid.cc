@@ -3,11 +3,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.h"
 #include "refine/band_transfer.h"
 #include "refine/dot.h"
+#include "refine/row_sample.h"
 
 namespace glint {
 namespace {
@@ -15,7 +17,7 @@ namespace {
 constexpr size_t kGrain = 1 << 13;
 constexpr size_t kDirectSize = 600;  // voxels, from which on a dense factorisation is quicker
 constexpr size_t kMaxLevels = 12;
-constexpr size_t kMaxRows = 32;  // with the same first voxel, on the coarse bands: more only cost memory
+constexpr size_t kMaxRows = 8;  // with the same first voxel, for the next coarser band: more only cost memory
 // The smoother takes down eigenvalues from here to 1. What the next coarser band cannot hold begins at 1/36 for the
 // squared Laplacian, whose waves across one axis are the slowest.
 constexpr float kSmallestSmoothed = 1.f / 20;
@@ -33,16 +35,12 @@ BandWeights CoarseWeights(const BandWeights& fine, size_t num_fine, const BandTr
   return coarse;
 }
 
-const BandRows& NoRows() {
-  static const BandRows none;
-  return none;
-}
-
 }  // namespace
 
 struct BandMultigrid::Level {
   std::unique_ptr<BandTransfer> transfer;  // from the next finer level; none on the finest
   BandWeights weights;                     // not used on the finest
+  std::optional<RowSample> sample;         // of its rows; none on the finest
   std::unique_ptr<BandOperator> own;
   const BandOperator* matrix = nullptr;
   std::vector<float> inverse;                        // of the absolute row sums
@@ -100,8 +98,8 @@ struct BandMultigrid::Level {
   }
 };
 
-BandMultigrid::BandMultigrid(const BandOperator& finest)
-    : sample_(finest.Crowded() ? NoRows() : finest.rows(), finest.topology().size(), kMaxRows) {
+BandMultigrid::BandMultigrid(const BandOperator& finest) {
+  const BandRows none;
   levels_.push_back(std::make_unique<Level>());
   levels_[0]->matrix = &finest;
   levels_[0]->Prepare();
@@ -111,12 +109,12 @@ BandMultigrid::BandMultigrid(const BandOperator& finest)
     coarse->transfer = std::make_unique<BandTransfer>(fine.matrix->topology());
     if (coarse->transfer->coarse().size() > fine.x.size() * 3 / 4) break;  // as coarse as it gets
     coarse->weights = CoarseWeights(fine.matrix->weights(), fine.x.size(), *coarse->transfer);
-    const BandRows& rows = fine.matrix->rows();
-    const bool thin = !fine.own && !sample_.All();
-    coarse->own = std::make_unique<BandOperator>(
-        coarse->transfer->coarse(), coarse->weights,
-        thin ? coarse->transfer->Restrict(sample_.Taken(rows)) : coarse->transfer->Restrict(rows));
-    if (finest.Crowded()) coarse->own->SetGram(fine.matrix->Gram().Restricted(*coarse->transfer));
+    const bool crowded = fine.matrix->Crowded();
+    const BandRows& rows = crowded ? none : fine.matrix->rows();
+    coarse->sample.emplace(rows, fine.x.size(), kMaxRows);
+    coarse->own = std::make_unique<BandOperator>(coarse->transfer->coarse(), coarse->weights,
+                                                 coarse->transfer->Restrict(coarse->sample->Taken(rows)));
+    if (crowded) coarse->own->SetGram(fine.matrix->Gram().Restricted(*coarse->transfer));
     coarse->matrix = coarse->own.get();
     coarse->Prepare();
     levels_.push_back(std::move(coarse));
@@ -127,14 +125,17 @@ BandMultigrid::BandMultigrid(const BandOperator& finest)
 BandMultigrid::~BandMultigrid() = default;
 
 void BandMultigrid::UpdateRowWeights() {
-  const BandOperator& finest = *levels_[0]->matrix;
-  const std::vector<double> weights = sample_.Weights(finest.Crowded() ? NoRows().weight : finest.rows().weight);
+  std::vector<double> weights;
   for (size_t l = 0; l < levels_.size(); ++l) {
     Level& level = *levels_[l];
-    if (level.own && finest.Crowded())
+    if (l == 0) {
+      weights = level.matrix->rows().weight;
+    } else if (levels_[l - 1]->matrix->Crowded()) {
       level.own->SetGram(levels_[l - 1]->matrix->Gram().Restricted(*level.transfer));
-    else if (level.own)
+    } else {
+      weights = level.sample->Weights(weights);
       level.own->SetRowWeights(weights);
+    }
     level.inverse = level.matrix->InverseAbsoluteRowSums();
   }
   FactorCoarsest();

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "refine/band_operator.h"
-#include "refine/row_sample.h"
 
 namespace glint {
 
@@ -38,7 +37,6 @@ class BandMultigrid {
   void Accelerated(size_t level);  // the same by two cycles, as directions of conjugate gradients; spoils b
   void FactorCoarsest();
 
-  const RowSample sample_;  // of the finest band's rows: those of the coarse ones
   std::vector<std::unique_ptr<Level>> levels_;
 };
 

@@ -11,7 +11,8 @@ namespace glint {
 
 class RowSample {
  public:
-  // Of the rows whose first voxel is the same at most `max_rows`, evenly picked.
+  // Of the rows of values, and of those of derivatives, whose first voxel is the same about `max_rows` at most, evenly
+  // picked.
   RowSample(const BandRows& rows, size_t num_voxels, size_t max_rows);
 
   bool All() const { return taken_.size() == place_.size(); }
@@ -22,8 +23,8 @@ class RowSample {
 
  private:
   std::vector<size_t> taken_;   // ascending
-  std::vector<int32_t> place_;  // of each row: its first voxel
-  size_t num_voxels_;
+  std::vector<int32_t> place_;  // of each row: its first voxel and its kind
+  size_t num_places_;
 };
 
 }  // namespace glint
