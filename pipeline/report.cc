@@ -95,7 +95,6 @@ Json ToJson(const StepSummary& step) {
 
 Json ToJson(const RefineSummary& refine) {
   Json json = {{"bends_like_seed", refine.bends_like_seed},
-               {"outlines_used", refine.outlines_used},
                {"highlights", refine.num_highlights},
                {"contacts", refine.num_contacts},
                {"points", refine.num_points},

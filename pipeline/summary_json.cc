@@ -43,8 +43,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(IterationSummary, voxel_rel, contacts_on_surf
                                    step, seconds)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Material, num_patches, scatter, contrast, used)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TiltSummary, materials, num_shaded, num_given_normals, normal_map_scatter_deg)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RefineSummary, iterations, bends_like_seed, outlines_used, num_highlights,
-                                   num_contacts, num_points, num_photo_points, tilts, converged, warnings)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RefineSummary, iterations, bends_like_seed, num_highlights, num_contacts, num_points,
+                                   num_photo_points, tilts, converged, warnings)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Contact, highlight, view, light, origin, direction, depth, prior_depth,
                                    surface_normal, sigma_normal, sigma_depth, pixel_angle, axis_rays, accepted, reason)
 

@@ -5,14 +5,8 @@
 
 #include "constraints/point_covariance.h"
 #include "core/check.h"
-#include "seed/rim_points.h"
 
 namespace glint {
-namespace {
-
-constexpr double kWellFitted = 0.85;  // share of the outlines
-
-}  // namespace
 
 KnownPlaces::KnownPlaces(const RefineInput& input, const RefineOptions& options, const UnitFrame& frame,
                          Progress& progress)
@@ -20,9 +14,7 @@ KnownPlaces::KnownPlaces(const RefineInput& input, const RefineOptions& options,
       rim_(KnownOutlinePlaces(input.scene, input.outline, frame)),
       photo_(input.scene, input.images, options.photo, frame, progress) {
   const Scene& scene = input.scene;
-  // Outlines of photographs are a pixel off, all to one side: a seed that fits them is better.
-  if (options.outlines == "always" ||
-      (options.outlines == "auto" && OutlineFit(scene, input.outline, input.seed) < kWellFitted))
+  if (options.use_outlines)
     for (const OutlineSample& sample : input.outline)
       outline_.push_back({frame.FromWorld(scene.views[sample.view].Center()), sample.ray, sample.normal,
                           frame.scale * sample.near, frame.scale * sample.far, frame.scale * sample.sigma});

@@ -24,7 +24,6 @@ class KnownPlaces {
 
   // Sparse points, then those from texture.
   const std::vector<SurfacePoint>& points() const { return points_; }
-  bool uses_outlines() const { return !outline_.empty(); }
   size_t num_sparse() const { return num_sparse_; }
   // What anchors the bundle: the points, and where the outlines show the surface.
   std::vector<SurfacePoint> Anchors(const LevelSet& field) const;

@@ -72,7 +72,6 @@ class Refiner {
       for (size_t v = 0; name == kFineScalar && v < values.size(); ++v)
         if (values[v] > 0) fine_.push_back(seed_.vertices[v]);
     summary_.bends_like_seed = options.bend != "flat";
-    summary_.outlines_used = known_.uses_outlines();
   }
 
   RefineResult Run() {

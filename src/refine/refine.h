@@ -33,7 +33,7 @@ struct RefineOptions {
   double min_point_sigma_rel = 0.0002;
   bool use_highlights = true;
   bool use_lobes = true;
-  std::string outlines = "auto";       // "always", "never", "auto": where the seed fits too few of them
+  bool use_outlines = true;
   std::string method = "variational";  // or "flow"
   std::string bend = "auto";           // "seed", "flat", "auto": what the evidence is for
   std::string lights = "auto";         // "fixed", "solve", "auto": solve those with a standard deviation
@@ -70,7 +70,6 @@ struct IterationSummary {
 struct RefineSummary {
   std::vector<IterationSummary> iterations;
   bool bends_like_seed = false;
-  bool outlines_used = false;
   int num_highlights = 0;
   int num_contacts = 0;
   int num_points = 0;

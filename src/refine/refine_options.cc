@@ -28,11 +28,8 @@ void RefineOptions::Visit(OptionVisitor& v) {
   v.Field({.name = "use_highlights", .help = "false: points and smoothness alone, to see what the highlights add"},
           use_highlights);
   v.Field({.name = "use_lobes", .help = "the shapes of the highlights too, not only their peaks"}, use_lobes);
-  v.Field({.name = "outlines",
-           .help = "whether the surface touches the rays through the object's outlines, too; auto: where the seed fits "
-                   "too few of them, which are a pixel off in photographs; always: for accurate masks",
-           .choices = {"auto", "always", "never"}},
-          outlines);
+  v.Field({.name = "use_outlines", .help = "the surface touches the rays through the object's outlines, too"},
+          use_outlines);
   v.Field({.name = "method",
            .help = "of a step: variational: the least energy at once; flow: the papers' partial differential equation",
            .choices = {"variational", "flow"}},

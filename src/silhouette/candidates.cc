@@ -17,10 +17,8 @@ constexpr double kMargin = 0.35;            // of the projection's larger side
 constexpr double kReachRel = 0.15;          // of the diagonal: how far outside of the rough mesh the object may be
 constexpr double kReachFromHullRel = 0.05;  // outside of what other views leave room for
 constexpr double kClippedPx = 2;
-constexpr double kCoreRel = 0.05;      // and inside of it from where on it is for sure
-constexpr double kStep = 2;            // px between samples
-constexpr double kMaskSigmaPx = 0.7;   // of a mask's outline, its px
-constexpr double kFoundSigmaPx = 0.5;  // of a found one's, raster px
+constexpr double kCoreRel = 0.05;  // and inside of it from where on it is for sure
+constexpr double kStep = 2;        // px between samples
 
 double Overlap(const cv::Mat& a, const cv::Mat& b, double a_elsewhere) {
   const double both = cv::countNonZero(a & b), any = cv::countNonZero(a | b);
@@ -93,8 +91,10 @@ std::optional<Candidate> FromMask(const Work& work, size_t view) {
   const double elsewhere =
       (cv::countNonZero(mask) - cv::countNonZero(mask(raster->window))) * raster->scale * raster->scale;
   out.overlap = Overlap(small, ProjectedDistance(work.scene.views[view], work.rough.mesh, *raster) < 0, elsewhere);
-  out.sigma_px = kMaskSigmaPx * std::max(1.0, raster->scale);
+  out.sigma_px = FineEdgeSigma(*raster);
   Finish(work, view, *raster, small, out);
+  cv::cvtColor(mask, mask, cv::COLOR_GRAY2BGR);
+  out.contour = OnFineEdges(mask, *raster, false, out.contour);
   return out;
 }
 
@@ -103,9 +103,9 @@ std::optional<Candidate> FromPhotograph(const Work& work, size_t view, const Tri
   cv::Mat image;
   if (!found_raster || !work.images.Load(view, image)) return std::nullopt;
   const Raster& raster = *found_raster;
-  cv::Mat window = image(raster.window), small;
-  if (window.depth() == CV_16U) window.convertTo(window, CV_8U, 1.0 / 257);
-  cv::resize(window, small, raster.size, 0, 0, cv::INTER_AREA);
+  if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 257);
+  cv::Mat small;
+  cv::resize(image(raster.window), small, raster.size, 0, 0, cv::INTER_AREA);
   const double size = work.DiagonalPx(view, raster);
   const double reach = std::max(3.0, (hull ? kReachFromHullRel : kReachRel) * size);
   const double core = std::max(2.0, kCoreRel * size);
@@ -120,10 +120,11 @@ std::optional<Candidate> FromPhotograph(const Work& work, size_t view, const Tri
       WithoutIslands(Segment({small, expected, Hints(work, view, raster), reach, core}), expected < -core);
   Candidate out;
   out.overlap = Overlap(mask, rough < 0, 0);
-  out.sigma_px = kFoundSigmaPx;
+  out.sigma_px = FineEdgeSigma(raster);
   out.found = true;
   Finish(work, view, raster, mask, out);
-  out.contour = OnEdges(small, out.contour);
+  // The mask keeps to the raster's edges, inside of the object's: what it leaves room for is then rather too little.
+  out.contour = OnFineEdges(image, raster, true, OnEdges(small, out.contour));
   ForgetBeyond(mask, expected > reach - kClippedPx, out.mask.distance);
   return out;
 }

@@ -1,7 +1,6 @@
 #include "silhouette/edge_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -10,18 +9,64 @@
 namespace glint::internal {
 namespace {
 
-constexpr double kReach = 2.5;      // px to either side
-constexpr double kStep = 0.5;       // px
 constexpr double kMinContrast = 2;  // Lab units a px: hardly visible
-constexpr int kCount = 2 * static_cast<int>(kReach / kStep) + 1;
+constexpr double kReach = 2.5;      // px of the raster to either side
+constexpr double kFineReach = 1.5;  // the same, about what was found there
+// Finer than this the photograph is not looked at: px of the raster. Edges are not sharper, but noise is stronger.
+constexpr double kFinest = 0.3;
+constexpr double kRimShare = 0.25;   // of the contrast
+constexpr double kRimStep = 0.25;    // units
+constexpr double kAroundFrom = 2.5;  // units outside of the steepest place
+constexpr int kAroundSteps = 6;      // of half a unit
 
 Eigen::Vector3d ColorAt(const cv::Mat& lab, const Eigen::Vector2d& at) {
   const double x = std::clamp(at.x() - 0.5, 0.0, lab.cols - 1.001), y = std::clamp(at.y() - 0.5, 0.0, lab.rows - 1.001);
   const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
   const auto u = static_cast<float>(x - x0), v = static_cast<float>(y - y0);
-  const cv::Vec3f c = (1 - v) * ((1 - u) * lab.at<cv::Vec3f>(y0, x0) + u * lab.at<cv::Vec3f>(y0, x0 + 1)) +
-                      v * ((1 - u) * lab.at<cv::Vec3f>(y0 + 1, x0) + u * lab.at<cv::Vec3f>(y0 + 1, x0 + 1));
+  const auto at_corner = [&](int dx, int dy) -> cv::Vec3f {
+    return lab.depth() == CV_8U ? cv::Vec3f(lab.at<cv::Vec3b>(y0 + dy, x0 + dx)) : lab.at<cv::Vec3f>(y0 + dy, x0 + dx);
+  };
+  const cv::Vec3f c = (1 - v) * ((1 - u) * at_corner(0, 0) + u * at_corner(1, 0)) +
+                      v * ((1 - u) * at_corner(0, 1) + u * at_corner(1, 1));
   return {c[0], c[1], c[2]};
+}
+
+struct Edge {
+  double offset = 0;  // px
+  double slope = 0;   // of the colour, a px
+};
+
+// Where a profile of colours, color(offset), is steepest between -reach and reach.
+template <class Color>
+Edge Steepest(double reach, double unit, const Color& color) {
+  const int half = std::max(1, static_cast<int>(std::ceil(reach / (unit / 2))));
+  std::vector<Eigen::Vector3d> colors;  // half a unit apart
+  for (int i = -half - 1; i <= half + 1; ++i) colors.push_back(color(i * unit / 2));
+  std::vector<double> slope;
+  for (size_t i = 1; i + 1 < colors.size(); ++i) slope.push_back((colors[i + 1] - colors[i - 1]).norm() / unit);
+  const auto best = static_cast<size_t>(std::max_element(slope.begin(), slope.end()) - slope.begin());
+  Edge edge{(static_cast<double>(best) - half) * unit / 2, slope[best]};
+  if (best > 0 && best + 1 < slope.size()) {
+    const double bend = slope[best - 1] - 2 * slope[best] + slope[best + 1];
+    if (bend < 0) edge.offset += unit / 2 * std::clamp(0.5 * (slope[best - 1] - slope[best + 1]) / bend, -0.5, 0.5);
+  }
+  return edge;
+}
+
+// A glossy rim mirrors what is behind it more and more: it ends outside of where it looks most different. Outwards from
+// there, where the colours are those of the surroundings but for a share.
+template <class Color>
+double RimOffset(double steepest, double unit, const Color& color) {
+  Eigen::Vector3d around = Eigen::Vector3d::Zero();
+  for (int k = 0; k < kAroundSteps; ++k) around += color(steepest + (kAroundFrom + 0.5 * k) * unit) / kAroundSteps;
+  const Eigen::Vector3d contrast = color(steepest - unit) - around;
+  double before = 1;
+  for (double t = steepest; t < steepest + kAroundFrom * unit; t += kRimStep * unit) {
+    const double left = (color(t) - around).dot(contrast) / contrast.squaredNorm();
+    if (!(left > kRimShare)) return t - (t > steepest ? kRimStep * unit * (kRimShare - left) / (before - left) : 0);
+    before = left;
+  }
+  return steepest;
 }
 
 }  // namespace
@@ -32,21 +77,29 @@ std::vector<ContourPoint> OnEdges(const cv::Mat& image, const std::vector<Contou
   std::vector<ContourPoint> out;
   if (lab.cols < 2 || lab.rows < 2) return out;
   for (const ContourPoint& p : contour) {
-    std::array<double, kCount> slope;
-    for (int i = 0; i < kCount; ++i) {
-      const double t = -kReach + i * kStep;
-      slope[i] = (ColorAt(lab, p.at + (t + 0.5) * p.out) - ColorAt(lab, p.at + (t - 0.5) * p.out)).norm();
-    }
-    const int best = static_cast<int>(std::max_element(slope.begin(), slope.end()) - slope.begin());
-    if (slope[best] < kMinContrast) continue;
-    double t = -kReach + best * kStep;
-    if (best > 0 && best + 1 < kCount) {
-      const double bend = slope[best - 1] - 2 * slope[best] + slope[best + 1];
-      if (bend < 0) t += kStep * std::clamp(0.5 * (slope[best - 1] - slope[best + 1]) / bend, -0.5, 0.5);
-    }
-    out.push_back({p.at + t * p.out, p.out});
+    const Edge edge = Steepest(kReach, 1, [&](double t) { return ColorAt(lab, p.at + t * p.out); });
+    if (edge.slope >= kMinContrast) out.push_back({p.at + edge.offset * p.out, p.out});
   }
   return out;
 }
+
+std::vector<ContourPoint> OnFineEdges(const cv::Mat& image, const Raster& raster, bool photograph,
+                                      std::vector<ContourPoint> contour) {
+  const double unit = std::max(1.0, kFinest / raster.scale);
+  if (unit * raster.scale >= 1 || image.cols < 2 || image.rows < 2) return contour;
+  for (ContourPoint& p : contour) {
+    const Eigen::Vector2d px = raster.ToImage(p.at), along(-p.out.y(), p.out.x());
+    const auto color = [&](double t) -> Eigen::Vector3d {
+      const Eigen::Vector2d at = px + t * p.out;
+      return (ColorAt(image, at - unit * along) + ColorAt(image, at) + ColorAt(image, at + unit * along)) / 3;
+    };
+    const Edge edge = Steepest(kFineReach / raster.scale, unit, color);
+    const double offset = photograph ? RimOffset(edge.offset, unit, color) : edge.offset;
+    p.at = raster.FromImage(px + offset * p.out);
+  }
+  return contour;
+}
+
+double FineEdgeSigma(const Raster& raster) { return 0.5 * std::max(raster.scale, kFinest); }
 
 }  // namespace glint::internal

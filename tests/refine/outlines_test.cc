@@ -37,7 +37,7 @@ std::vector<OutlineSample> BallOutline(const Scene& scene, int count) {
 // A ball of points with a dent that only outlines show.
 class RefineWithOutlines : public ::testing::Test {
  protected:
-  RefineResult Of(double dent, const char* outlines) {
+  RefineResult Of(double dent, bool use_outlines) {
     TriangleMesh seed = testing::BallMesh({0, 0, 0}, 1, 40);
     for (Eigen::Vector3d& x : seed.vertices) x *= 1 - dent * std::exp(-(x - Eigen::Vector3d::UnitX()).squaredNorm());
     RefineInput input{scene_, seed, {}, {}, {}};
@@ -45,7 +45,7 @@ class RefineWithOutlines : public ::testing::Test {
     RefineOptions options;
     options.voxel_rel = 1.0 / 64;
     options.levels = 1;
-    options.outlines = outlines;
+    options.use_outlines = use_outlines;
     return Refine(input, options);
   }
 
@@ -59,17 +59,13 @@ class RefineWithOutlines : public ::testing::Test {
 };
 
 TEST_F(RefineWithOutlines, TheDentComesOut) {
-  const RefineResult without = Of(0.1, "never"), with = Of(0.1, "auto");
-  EXPECT_FALSE(without.summary.outlines_used);
-  EXPECT_TRUE(with.summary.outlines_used);
+  const RefineResult without = Of(0.1, false), with = Of(0.1, true);
   EXPECT_GT(WorstRadiusError(without.mesh), 0.08);
   EXPECT_LT(WorstRadiusError(with.mesh), 0.5 * WorstRadiusError(without.mesh));
 }
 
-TEST_F(RefineWithOutlines, AreLeftAloneWhereTheSeedFitsThem) {
-  EXPECT_FALSE(Of(0, "auto").summary.outlines_used);
-  EXPECT_TRUE(Of(0, "always").summary.outlines_used);
-}
+// To a twentieth of a voxel.
+TEST_F(RefineWithOutlines, WhatFitsThemStays) { EXPECT_LT(WorstRadiusError(Of(0, true).mesh), 0.0027); }
 
 }  // namespace
 }  // namespace glint
