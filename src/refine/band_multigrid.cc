@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kGrain = 1 << 13;
 constexpr size_t kDirectSize = 600;  // voxels, from which on a dense factorisation is quicker
 constexpr size_t kMaxLevels = 12;
-constexpr size_t kMaxRows = 8;  // with the same first voxel, for the next coarser band: more only cost memory
+constexpr size_t kMaxRows = 4;  // with the same first voxel, for the next coarser band: more only cost memory
 // The smoother takes down eigenvalues from here to 1. What the next coarser band cannot hold begins at 1/36 for the
 // squared Laplacian, whose waves across one axis are the slowest.
 constexpr float kSmallestSmoothed = 1.f / 20;
