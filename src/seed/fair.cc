@@ -9,6 +9,7 @@
 
 #include "core/check.h"
 #include "core/median.h"
+#include "core/parallel.h"
 #include "core/square.h"
 #include "geometry/closest_point.h"
 #include "geometry/edge_topology.h"
@@ -31,6 +32,7 @@ constexpr double kFlatness = 0.1;  // belief in a flat surface, where outlines a
 constexpr double kStiffStart = 2.5;  // times the smoothing asked for
 constexpr double kMaxGrowth =
     1.5;  // times the sparse surface's size: more is a bend that runs away where nothing holds
+constexpr size_t kGrain = 256;
 constexpr double kTrustedRange = 4;  // usual distances: farther attachments lose most of their weight
 
 std::vector<Attachment> Leading(const std::vector<Attachment>& attachments) {
@@ -67,13 +69,13 @@ struct Foot {
 
 std::vector<Foot> FeetOf(const std::vector<Attachment>& attachments, const TriangleMesh& mesh) {
   const ClosestPointQuery query(mesh);
-  std::vector<Foot> feet;
-  for (const Attachment& a : attachments) {
-    const MeshPoint at = *query.Find(a.position);
+  std::vector<Foot> feet(attachments.size());
+  ParallelFor(feet.size(), kGrain, [&](size_t i) {
+    const MeshPoint at = *query.Find(attachments[i].position);
     const Eigen::Vector3i& f = mesh.faces[at.face];
-    feet.push_back({f, Barycentric(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], at.point),
-                    std::sqrt(at.squared_distance)});
-  }
+    feet[i] = {f, Barycentric(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], at.point),
+               std::sqrt(at.squared_distance)};
+  });
   return feet;
 }
 
@@ -154,18 +156,22 @@ struct Springs {
 void HoldUnseen(const TriangleMesh& mesh, const ClosestPointQuery& raw, const FairContext& context, double weight,
                 double stay, Springs& springs) {
   const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
+  std::vector<std::optional<Eigen::Vector3d>> unseen(mesh.vertices.size());
+  if (!context.ground)
+    ParallelFor(unseen.size(), kGrain, [&](size_t v) {
+      const Eigen::Vector3d& x = mesh.vertices[v];
+      const bool seen = std::any_of(context.eyes.begin(), context.eyes.end(), [&](const Eigen::Vector3d& eye) {
+        return normals[v].dot((eye - x).normalized()) > kUnseenCosine;
+      });
+      if (!seen) unseen[v] = raw.Find(x)->point;
+    });
   for (size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Eigen::Vector3d& x = mesh.vertices[v];
-    springs.Hold(static_cast<int>(v), x, kInertia * weight);
-    if (context.ground) {
-      if (context.ground->signedDistance(x) < 0)
-        springs.Hold(static_cast<int>(v), context.ground->projection(x), weight);
-      continue;
-    }
-    const bool seen = std::any_of(context.eyes.begin(), context.eyes.end(), [&](const Eigen::Vector3d& eye) {
-      return normals[v].dot((eye - x).normalized()) > kUnseenCosine;
-    });
-    if (!seen) springs.Hold(static_cast<int>(v), raw.Find(x)->point, stay * weight);
+    const int vertex = static_cast<int>(v);
+    springs.Hold(vertex, x, kInertia * weight);
+    if (context.ground && context.ground->signedDistance(x) < 0)
+      springs.Hold(vertex, context.ground->projection(x), weight);
+    if (unseen[v]) springs.Hold(vertex, *unseen[v], stay * weight);
   }
 }
 
