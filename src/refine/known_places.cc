@@ -14,7 +14,7 @@ KnownPlaces::KnownPlaces(const RefineInput& input, const RefineOptions& options,
       rim_(KnownOutlinePlaces(input.scene, input.outline, frame)),
       photo_(input.scene, input.images, options.photo, frame, progress) {
   const Scene& scene = input.scene;
-  if (options.use_outlines) outline_ = SpacedRays(scene, input.outline, frame);
+  if (options.use_outlines) outline_ = RaysOf(scene, input.outline, frame);
   if (input.point_used.empty()) return;
   GLINT_CHECK_EQ(input.point_used.size(), scene.points.size());
   const std::vector<Eigen::Matrix3d> covariances = PointCovariances(scene, input.point_used);

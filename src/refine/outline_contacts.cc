@@ -15,8 +15,8 @@ namespace {
 // Of an outline's direction in the photograph: pixels make it jagged.
 constexpr double kSigmaNormal = 3 * M_PI / 180;
 constexpr double kLeastSigma = 0.0005;
-constexpr double kReach = 0.02;    // decides the footprint over which the normal is taken
-constexpr double kSpacing = 0.02;  // along an outline
+constexpr double kReach = 0.02;  // decides the footprint over which the normal is taken
+constexpr size_t kEvery = 4;     // sample along an outline, where they are half a per cent of the diagonal apart
 // Of places on the outlines: how well they are known along their rays, how far apart, and across their rays (outlines
 // in photographs are a pixel or so off). Fractions of the diagonal.
 constexpr double kMaxInterval = 0.05, kCell = 0.01, kPlaceSigma = 0.002;
@@ -42,13 +42,10 @@ std::optional<double> LeastOn(const OutlineRay& sample, const LevelSet& field) {
 
 }  // namespace
 
-std::vector<OutlineRay> SpacedRays(const Scene& scene, const std::vector<OutlineSample>& outline,
-                                   const UnitFrame& frame) {
+std::vector<OutlineRay> RaysOf(const Scene& scene, const std::vector<OutlineSample>& outline, const UnitFrame& frame) {
   std::vector<OutlineRay> rays;
-  const OutlineSample* last = nullptr;
-  for (const OutlineSample& s : outline) {
-    if (last && last->view == s.view && frame.scale * s.depth * (s.ray - last->ray).norm() < kSpacing) continue;
-    last = &s;
+  for (size_t i = 0; i < outline.size(); i += kEvery) {
+    const OutlineSample& s = outline[i];
     rays.push_back({frame.FromWorld(scene.views[s.view].Center()), s.ray, s.normal, frame.scale * s.near,
                     frame.scale * s.far, frame.scale * s.sigma});
   }

@@ -19,10 +19,9 @@ struct OutlineRay {
   double near = 0, far = 0, sigma = 0;
 };
 
-// Of the samples along each view's outlines those that are 2 % of the diagonal apart: nearer ones are wrong together,
-// by what their edges look like, and would cost time.
-std::vector<OutlineRay> SpacedRays(const Scene& scene, const std::vector<OutlineSample>& outline,
-                                   const UnitFrame& frame);
+// Some of the samples, evenly: those next to each other are wrong together, by what their edges look like, and would
+// cost time.
+std::vector<OutlineRay> RaysOf(const Scene& scene, const std::vector<OutlineSample>& outline, const UnitFrame& frame);
 
 // Where the rays come nearest to the current surface: there it has to touch them, with the outline's normal. Rays
 // whose nearest place is off the band, or at an end of what the other views leave room for, are left out. Lengths in

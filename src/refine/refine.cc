@@ -33,7 +33,6 @@ constexpr double kMaxWayVoxels = 24;  // for memory's sake
 // Standard deviations change slowly over the surface.
 constexpr double kConfidenceVoxelRel = 1.0 / 64;
 constexpr double kVoxelsAWall = 3;  // to carry it
-constexpr double kClearBend = 1.2;  // times the energy with the seed's bend: what a flat surface then costs
 // Pieces of the extracted surface with a smaller share of its area are crumbs of the band.
 constexpr double kMinPieceShare = 0.005;
 
@@ -112,7 +111,6 @@ class Refiner {
   TriangleMesh seed_, surface_;
   LevelSet field_;  // of the surface; empty before the first step
   LevelSet seed_field_;
-  bool bend_is_clear_ = false;
   int steps_left_out_ = 0;
   double way_from_seed_ = 0;  // the largest of the surface's vertices so far
   HighlightContacts highlights_;
@@ -152,8 +150,8 @@ HighlightContacts Refiner::MakeHighlights() const {
   return {std::move(contacts), std::move(lights), std::move(solve), options_.use_lobes};
 }
 
-// A faired seed bends much as the object does, a raw mesh is rough: the first step of each level tells which it is, at
-// the roughness that its voxels resolve, until it is clear: from level to level the two energies keep their ratio.
+// A faired seed bends much as the object does, a raw mesh is rough: the first step of each level
+// tells which it is, at the roughness that its voxels resolve. Coarser ones cannot tell for it.
 LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& summary) {
   const Unresolved unresolved(surface_, field_, fine_);
   std::vector<OrientedPoint> contacts = highlights_.Oriented();
@@ -174,7 +172,6 @@ LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& 
   if (!undecided || !summary_.bends_like_seed || options_.bend != "auto") return stepped;
   StepSummary flat_summary;
   LevelSet flat = step(false, flat_summary);
-  bend_is_clear_ = flat_summary.energy_after > kClearBend * summary.energy_after;
   if (summary.energy_after <= flat_summary.energy_after) return stepped;
   summary_.bends_like_seed = false;
   summary = flat_summary;
@@ -216,7 +213,7 @@ bool Refiner::RunLevel(double voxel, size_t progress_steps) {
                                       voxel;
     iteration.contacts_on_surface = highlights_.num_on_surface();
     tilts_.LookAgain(surface_, highlights_.lights(), !summary_.iterations.empty());
-    const LevelSet stepped = Step(seed_field, k == 0 && !bend_is_clear_, iteration.step);
+    const LevelSet stepped = Step(seed_field, k == 0, iteration.step);
     TakeSurface(stepped, sdf);
     iteration.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     summary_.iterations.push_back(iteration);
