@@ -14,6 +14,7 @@ constexpr double kReach = 2.5;      // px of the raster to either side
 constexpr double kFineReach = 1.5;  // the same, about what was found there
 // Finer than this the photograph is not looked at: px of the raster. Edges are not sharper, but noise is stronger.
 constexpr double kFinest = 0.3;
+constexpr double kSigma = 0.5;       // px of what is looked at
 constexpr double kRimShare = 0.25;   // of the contrast
 constexpr double kRimStep = 0.25;    // units
 constexpr double kAroundFrom = 2.5;  // units outside of the steepest place
@@ -100,6 +101,6 @@ std::vector<ContourPoint> OnFineEdges(const cv::Mat& image, const Raster& raster
   return contour;
 }
 
-double FineEdgeSigma(const Raster& raster) { return 0.5 * std::max(raster.scale, kFinest); }
+double FineEdgeSigma(const Raster& raster) { return kSigma * std::max(raster.scale, kFinest); }
 
 }  // namespace glint::internal
