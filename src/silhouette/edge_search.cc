@@ -62,9 +62,10 @@ double RimOffset(double steepest, double unit, const Color& color) {
   for (int k = 0; k < kAroundSteps; ++k) around += color(steepest + (kAroundFrom + 0.5 * k) * unit) / kAroundSteps;
   const Eigen::Vector3d contrast = color(steepest - unit) - around;
   double before = 1;
-  for (double t = steepest; t < steepest + kAroundFrom * unit; t += kRimStep * unit) {
+  for (int k = 0; k * kRimStep < kAroundFrom; ++k) {
+    const double t = steepest + k * kRimStep * unit;
     const double left = (color(t) - around).dot(contrast) / contrast.squaredNorm();
-    if (!(left > kRimShare)) return t - (t > steepest ? kRimStep * unit * (kRimShare - left) / (before - left) : 0);
+    if (!(left > kRimShare)) return t - (k > 0 ? kRimStep * unit * (kRimShare - left) / (before - left) : 0);
     before = left;
   }
   return steepest;
