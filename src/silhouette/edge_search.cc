@@ -61,10 +61,12 @@ double RimOffset(double steepest, double unit, const Color& color) {
   Eigen::Vector3d around = Eigen::Vector3d::Zero();
   for (int k = 0; k < kAroundSteps; ++k) around += color(steepest + (kAroundFrom + 0.5 * k) * unit) / kAroundSteps;
   const Eigen::Vector3d contrast = color(steepest - unit) - around;
+  const double squared = contrast.squaredNorm();
+  if (!(squared > 0)) return steepest;
   double before = 1;
   for (int k = 0; k * kRimStep < kAroundFrom; ++k) {
     const double t = steepest + k * kRimStep * unit;
-    const double left = (color(t) - around).dot(contrast) / contrast.squaredNorm();
+    const double left = (color(t) - around).dot(contrast) / squared;
     if (!(left > kRimShare)) return t - (k > 0 ? kRimStep * unit * (kRimShare - left) / (before - left) : 0);
     before = left;
   }
@@ -96,6 +98,7 @@ std::vector<ContourPoint> OnFineEdges(const cv::Mat& image, const Raster& raster
       return (ColorAt(image, at - unit * along) + ColorAt(image, at) + ColorAt(image, at + unit * along)) / 3;
     };
     const Edge edge = Steepest(kFineReach / raster.scale, unit, color);
+    if (!(edge.slope > 0)) continue;  // all of one colour
     const double offset = photograph ? RimOffset(edge.offset, unit, color) : edge.offset;
     p.at = raster.FromImage(px + offset * p.out);
   }

@@ -75,5 +75,16 @@ TEST(OnFineEdges, LeavesAsItIsWhatIsNoSmaller) {
   EXPECT_EQ(OnFineEdges(image, same, true, points)[0].at, points[0].at);
 }
 
+TEST(OnFineEdges, LeavesAsItIsWhatHasNoEdge) {
+  const Raster raster{cv::Rect(0, 0, kSide, kSide), double{kRasterSide} / kSide, cv::Size(kRasterSide, kRasterSide)};
+  const std::vector<ContourPoint> points = {{{120.3, 87.9}, {0.6, 0.8}}};
+  EXPECT_EQ(OnFineEdges(cv::Mat(kSide, kSide, CV_8UC3, cv::Scalar(9, 9, 9)), raster, true, points)[0].at, points[0].at);
+  // A line of one pixel, with the same on both sides of it: its edge, wherever that is, is near.
+  cv::Mat line(kSide, kSide, CV_8UC3, cv::Scalar(9, 9, 9));
+  cv::line(line, {0, 352}, {kSide - 1, 352}, cv::Scalar(200, 200, 200));
+  const std::vector<ContourPoint> on_it = {{{120, 88}, {0, 1}}};
+  EXPECT_LT((OnFineEdges(line, raster, true, on_it)[0].at - on_it[0].at).norm(), 1);
+}
+
 }  // namespace
 }  // namespace glint::internal
