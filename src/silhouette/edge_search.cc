@@ -15,6 +15,7 @@ constexpr double kFineReach = 1.5;  // the same, about what was found there
 // Finer than this the photograph is not looked at: px of the raster. Edges are not sharper, but noise is stronger.
 constexpr double kFinest = 0.3;
 constexpr double kSigma = 0.5;       // px of what is looked at
+constexpr double kLeastSlope = 0.1;  // of 255 a px, of the photograph
 constexpr double kRimShare = 0.25;   // of the contrast
 constexpr double kRimStep = 0.25;    // units
 constexpr double kAroundFrom = 2.5;  // units outside of the steepest place
@@ -98,7 +99,7 @@ std::vector<ContourPoint> OnFineEdges(const cv::Mat& image, const Raster& raster
       return (ColorAt(image, at - unit * along) + ColorAt(image, at) + ColorAt(image, at + unit * along)) / 3;
     };
     const Edge edge = Steepest(kFineReach / raster.scale, unit, color);
-    if (!(edge.slope > 0)) continue;  // all of one colour
+    if (edge.slope < kLeastSlope) continue;  // all of one colour
     const double offset = photograph ? RimOffset(edge.offset, unit, color) : edge.offset;
     p.at = raster.FromImage(px + offset * p.out);
   }
