@@ -21,12 +21,14 @@ constexpr double kRimStep = 0.25;    // units
 constexpr double kAroundFrom = 2.5;  // units outside of the steepest place
 constexpr int kAroundSteps = 6;      // of half a unit
 
-Eigen::Vector3d ColorAt(const cv::Mat& lab, const Eigen::Vector2d& at) {
-  const double x = std::clamp(at.x() - 0.5, 0.0, lab.cols - 1.001), y = std::clamp(at.y() - 0.5, 0.0, lab.rows - 1.001);
+Eigen::Vector3d ColorAt(const cv::Mat& image, const Eigen::Vector2d& at) {
+  const double x = std::clamp(at.x() - 0.5, 0.0, image.cols - 1.001),
+               y = std::clamp(at.y() - 0.5, 0.0, image.rows - 1.001);
   const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
   const auto u = static_cast<float>(x - x0), v = static_cast<float>(y - y0);
   const auto at_corner = [&](int dx, int dy) -> cv::Vec3f {
-    return lab.depth() == CV_8U ? cv::Vec3f(lab.at<cv::Vec3b>(y0 + dy, x0 + dx)) : lab.at<cv::Vec3f>(y0 + dy, x0 + dx);
+    return image.depth() == CV_8U ? cv::Vec3f(image.at<cv::Vec3b>(y0 + dy, x0 + dx))
+                                  : image.at<cv::Vec3f>(y0 + dy, x0 + dx);
   };
   const cv::Vec3f c = (1 - v) * ((1 - u) * at_corner(0, 0) + u * at_corner(1, 0)) +
                       v * ((1 - u) * at_corner(0, 1) + u * at_corner(1, 1));
