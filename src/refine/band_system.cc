@@ -17,19 +17,32 @@ constexpr size_t kGrain = 1 << 13;
 }  // namespace
 
 BandSystem::BandSystem(const Band& band, BandWeights weights, BandRows rows)
-    : weights_(std::move(weights)), operator_(band, weights_, std::move(rows)) {
+    : weights_(std::move(weights)),
+      operator_(band, weights_, std::move(rows)),
+      voxel_size_(static_cast<float>(band.voxel_size())) {
   GLINT_CHECK_EQ(weights_.pull_target.size(), band.size());
-  target_differences_.resize(band.size() + 1);
+  BuildTargets();
+  BuildRightHandSide();
+}
+
+void BandSystem::BuildTargets() {
+  const size_t n = weights_.n.size();
+  target_differences_.assign(n + 1, {});
   if (!weights_.reference.empty()) {
-    GLINT_CHECK_EQ(weights_.reference.size(), band.size());
+    GLINT_CHECK_EQ(weights_.reference.size(), n);
     operator_.TakeDifferences(weights_.reference, target_differences_);
   }
-  for (size_t i = 0; i < band.size(); ++i) {
+  for (size_t i = 0; i < n; ++i) {
     // Where the reference is not known, no bending is the best guess.
     for (float& value : target_differences_[i])
       if (!std::isfinite(value)) value = 0;
-    target_differences_[i][6] = operator_.Interior(i) ? static_cast<float>(band.voxel_size()) : 0;
+    target_differences_[i][6] = operator_.Interior(i) ? voxel_size_ : 0;
   }
+}
+
+void BandSystem::SetReference(std::vector<float> reference) {
+  weights_.reference = std::move(reference);
+  BuildTargets();
   BuildRightHandSide();
 }
 

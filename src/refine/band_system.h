@@ -27,6 +27,9 @@ class BandSystem {
   void SetRowWeights(const std::vector<double>& weight);
   const BandRows& rows() const { return operator_.rows(); }
 
+  // Another field that costs no bending; the matrix stays as it is.
+  void SetReference(std::vector<float> reference);
+
   double Energy(const std::vector<double>& phi) const;
 
   // Conjugate gradients, preconditioned by a multigrid cycle, from phi until the residual (in the norm of the
@@ -40,12 +43,14 @@ class BandSystem {
                                 double tolerance);
 
  private:
+  void BuildTargets();
   void BuildRightHandSide();
   // Conjugate gradients; fills all but the energies.
   SolveReport Minimize(const std::vector<double>& rhs, int max_iterations, double tolerance, std::vector<double>& phi);
 
-  const BandWeights weights_;
+  BandWeights weights_;
   BandOperator operator_;
+  const float voxel_size_;
   std::unique_ptr<BandMultigrid> multigrid_;  // made by the first solve
   std::vector<BandOperator::Differences> target_differences_;
   std::vector<double> rhs_;

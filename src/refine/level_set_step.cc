@@ -87,7 +87,7 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
   weights.n.resize(band.size());
   weights.pull.resize(band.size());
   weights.pull_target.resize(band.size());
-  if (input.bend_like_seed) weights.reference.resize(band.size());
+  if (input.bend != Bend::kFlat) weights.reference.resize(band.size());
   static const std::vector<OrientedPoint> kNone;
   const std::vector<OrientedPoint>& contacts = options.highlight_weight > 0 ? input.contacts : kNone;
   const Explained explained(contacts);
@@ -111,7 +111,7 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
     const bool known = std::abs(value) < background - 2 * h;
     weights.pull[i] = known ? static_cast<float>(area * pull) : 0;
     weights.pull_target[i] = static_cast<float>(value);
-    if (input.bend_like_seed)
+    if (input.bend != Bend::kFlat)
       weights.reference[i] = !known ? std::numeric_limits<float>::quiet_NaN()
                              : hold ? static_cast<float>(value)
                                     : SmoothValue(input.seed, x);
@@ -139,14 +139,36 @@ LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options,
   report.points_off_band = constraints.points_off_band();
   BandSystem system(band, StepWeights(band, input, options), constraints.rows());
   std::vector<double> phi(band.phi().begin(), band.phi().end());
+  const auto solve = [&](std::vector<double>& field) {
+    const SolveReport solved = system.Solve(options.max_iterations, options.tolerance, field);
+    report.energy_after = solved.final_energy;
+    report.solver_iterations += solved.iterations;
+    report.relative_residual = solved.relative_residual;
+    return solved;
+  };
+  // The first solve trusts every contact: the seed is no judge of them, while the points have made it.
   for (int k = 0; k < options.reweightings; ++k) {
-    // The first solve trusts every contact: the seed is no judge of them, while the points have made it.
     system.SetRowWeights(constraints.RobustWeights(phi, k == 0));
-    const SolveReport solve = system.Solve(options.max_iterations, options.tolerance, phi);
-    if (k == 0) report.energy_before = solve.initial_energy;
-    report.energy_after = solve.final_energy;
-    report.solver_iterations += solve.iterations;
-    report.relative_residual = solve.relative_residual;
+    const SolveReport solved = solve(phi);
+    if (k == 0) report.energy_before = solved.initial_energy;
+  }
+  report.bends_like_seed = input.bend != Bend::kFlat;
+  if (input.bend == Bend::kEither) {
+    // Under the weights that the other ended with, so that the two energies are of one problem.
+    const StepSummary bent = report;
+    std::vector<double> flat = phi;
+    system.SetReference({});
+    if (solve(flat).final_energy < bent.energy_after) {
+      report.bends_like_seed = false;
+      phi = std::move(flat);
+      for (int k = 1; k < options.reweightings; ++k) {
+        system.SetRowWeights(constraints.RobustWeights(phi, false));
+        solve(phi);
+      }
+    } else {
+      report.energy_after = bent.energy_after;
+      report.relative_residual = bent.relative_residual;
+    }
   }
   return band.WithValues(std::vector<float>(phi.begin(), phi.end()));
 }

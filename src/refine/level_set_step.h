@@ -39,16 +39,19 @@ struct StepSummary {
   size_t num_voxels = 0;
   int contacts_off_band = 0;
   int points_off_band = 0;
+  bool bends_like_seed = false;
 };
 
+// What costs no bending: ψ = φ − φ₀, ψ = φ, or whichever of them the constraints speak for. With fixed constraints that
+// choice moves the mean of the prior alone, so the one with the lower energy has the more evidence.
+enum class Bend { kLikeSeed, kFlat, kEither };
+
 // All in units of the object's diagonal. `surface`: the current surface as a signed distance field; `seed`: the field
-// to stay near where nothing is known (its band should be the wider one; off it there is no pull); `bend_like_seed`:
-// ψ = φ − φ₀, else ψ = φ. With fixed constraints that choice moves the mean of the prior alone, so the one with the
-// lower energy has the more evidence.
+// to stay near where nothing is known (its band should be the wider one; off it there is no pull).
 struct StepInput {
   const LevelSet& surface;
   const LevelSet& seed;
-  bool bend_like_seed = true;
+  Bend bend = Bend::kLikeSeed;
   double surface_area = 0;
   const std::vector<OrientedPoint>& contacts;
   const std::vector<SurfacePoint>& points;

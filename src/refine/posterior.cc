@@ -63,8 +63,8 @@ SurfaceDeviation PosteriorDeviation(const StepInput& input, const LevelSetOption
                                     const std::vector<Eigen::Vector3d>& at) {
   const Band band(input.surface);
   const std::vector<OrientedPoint> contacts = NormalsAlone(input.contacts);
-  const StepInput measured{input.surface, input.seed,    input.bend_like_seed, input.surface_area, contacts,
-                           input.points,  input.outline, input.tilts,          input.unresolved};
+  const StepInput measured{input.surface, input.seed,    input.bend,  input.surface_area, contacts,
+                           input.points,  input.outline, input.tilts, input.unresolved};
   const SurfaceConstraints constraints = StepConstraints(band, measured, options);
   BandSystem system(band, StepWeights(band, measured, options), constraints.rows());
   const std::vector<double> phi(band.phi().begin(), band.phi().end());

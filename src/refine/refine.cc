@@ -161,21 +161,16 @@ LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& 
   const std::vector<OrientedPoint> outline = known_.Outline(field_);
   const double area = SurfaceArea(surface_);
   if (options_.method == "flow")
-    return FlowStep({field_, seed_field, false, area, contacts, known_.points(), outline, tilts, &unresolved},
+    return FlowStep({field_, seed_field, Bend::kFlat, area, contacts, known_.points(), outline, tilts, &unresolved},
                     options_.flow, &summary);
-  const auto step = [&](bool bend_like_seed, StepSummary& report) {
-    return VariationalStep(
-        {field_, seed_field, bend_like_seed, area, contacts, known_.points(), outline, tilts, &unresolved},
-        options_.level_set, &report);
-  };
-  LevelSet stepped = step(summary_.bends_like_seed, summary);
-  if (!undecided || !summary_.bends_like_seed || options_.bend != "auto") return stepped;
-  StepSummary flat_summary;
-  LevelSet flat = step(false, flat_summary);
-  if (summary.energy_after <= flat_summary.energy_after) return stepped;
-  summary_.bends_like_seed = false;
-  summary = flat_summary;
-  return flat;
+  const Bend bend = !summary_.bends_like_seed              ? Bend::kFlat
+                    : undecided && options_.bend == "auto" ? Bend::kEither
+                                                           : Bend::kLikeSeed;
+  LevelSet stepped =
+      VariationalStep({field_, seed_field, bend, area, contacts, known_.points(), outline, tilts, &unresolved},
+                      options_.level_set, &summary);
+  summary_.bends_like_seed = summary.bends_like_seed;
+  return stepped;
 }
 
 // True distances again, from the smooth zero set: from a mesh its facets would show in the normals.
@@ -242,9 +237,14 @@ void Refiner::MeasureConfidence() {
   const LevelSet seed_field = SeedField(voxel, options_.half_width_voxels + 1);
   const LevelSet field = Resample(field_, voxel, options_.half_width_voxels + 1);
   const std::vector<OrientedPoint> contacts = highlights_.Oriented(), outline = known_.Outline(field);
-  const StepInput input{
-      field,   seed_field,    summary_.bends_like_seed, SurfaceArea(surface_), contacts, known_.points(),
-      outline, tilts_.tilts()};
+  const StepInput input{field,
+                        seed_field,
+                        summary_.bends_like_seed ? Bend::kLikeSeed : Bend::kFlat,
+                        SurfaceArea(surface_),
+                        contacts,
+                        known_.points(),
+                        outline,
+                        tilts_.tilts()};
   AddConfidence(PosteriorDeviation(input, options_.level_set, surface_.vertices), surface_);
 }
 

@@ -72,7 +72,7 @@ double Crevice(const Stage& stage, const SurfaceHit& hit) {
 // What the gloss mirrors of the room and the ground, without shadows.
 Array3d Mirrored(const Stage& stage, const SurfaceHit& hit, const Vector3d& direction) {
   const Vector3d reflected = direction - 2 * direction.dot(hit.normal) * hit.normal;
-  const Array3d room = stage.surroundings.Room(reflected);
+  Array3d room = stage.surroundings.Room(reflected);
   if (reflected.z() >= -0.02) return room;
   const double t = (stage.surroundings.ground_z() - hit.position.z()) / reflected.z();
   if (t > 20) return room;

@@ -133,7 +133,7 @@ void MeasureSolve(const std::vector<int>& resolutions) {
     const double before = PeakMib();
     StepSummary summary;
     const double seconds = Seconds([&] {
-      VariationalStep({ball, ball, true, 1.05, contacts, {}, {}}, LevelSetOptions(), &summary);
+      VariationalStep({ball, ball, Bend::kLikeSeed, 1.05, contacts, {}, {}}, LevelSetOptions(), &summary);
     });
     const auto size = static_cast<double>(summary.num_voxels);
     fmt::print("{:>9} {:>12} {:>9.2f} {:>12.2f} {:>11} {:>11.0f} {:>10.0f}\n", voxels, summary.num_voxels, seconds,

@@ -42,7 +42,7 @@ TEST(FlowStep, CurvatureShrinksASphereAsItShould) {
   options.curvature = 1;
   options.max_steps = 10;
   StepSummary summary;
-  const LevelSet shrunk = FlowStep({sphere, sphere, false, 1, {}, {}, {}}, options, &summary);
+  const LevelSet shrunk = FlowStep({sphere, sphere, Bend::kFlat, 1, {}, {}, {}}, options, &summary);
   ASSERT_EQ(summary.solver_iterations, 10);
   const double time = 10 * 0.45 / 6 * kVoxel * kVoxel;
   EXPECT_NEAR(MeanRadius(sphere) - MeanRadius(shrunk), 0.4 - std::sqrt(0.16 - 4 * time), 2e-4);
@@ -65,7 +65,7 @@ TEST(FlowStep, TurnsTheSurfaceToTheNormals) {
   options.alignment = 1;
   options.max_steps = 400;
   StepSummary summary;
-  const LevelSet turned = FlowStep({sphere, sphere, false, 1, contacts, {}, {}}, options, &summary);
+  const LevelSet turned = FlowStep({sphere, sphere, Bend::kFlat, 1, contacts, {}, {}}, options, &summary);
 
   EXPECT_LT(summary.energy_after, 0.8 * summary.energy_before);
   const Eigen::Vector3d before = sphere.Gradient({0, 0, 0.4});
@@ -99,7 +99,7 @@ TEST(FlowStep, TwoBodiesMerge) {
   FlowOptions options = Nothing();
   options.force = 1;
   options.max_steps = 200;
-  const LevelSet merged = FlowStep({surface, surface, false, 1, contacts, {}, {}}, options, nullptr);
+  const LevelSet merged = FlowStep({surface, surface, Bend::kFlat, 1, contacts, {}, {}}, options, nullptr);
   EXPECT_LT(merged.Value(Eigen::Vector3d::Zero()), 0);
 }
 

@@ -79,7 +79,8 @@ TEST(HeldEdge, KeepsItsShape) {
   const std::vector<OrientedPoint> none;
   const std::vector<SurfacePoint> no_points;
   const LevelSet stepped = VariationalStep(
-      {field, seed, true, SurfaceArea(mesh), none, no_points, none, StepInput::kNoTilts, &held}, {}, nullptr);
+      {field, seed, Bend::kLikeSeed, SurfaceArea(mesh), none, no_points, none, StepInput::kNoTilts, &held}, {},
+      nullptr);
   double turned = 0;
   int on_edge = 0;
   for (const Eigen::Vector3d& v : mesh.vertices) {
