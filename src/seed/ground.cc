@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/check.h"
+#include "core/square.h"
 #include "seed/scene_layout.h"
 
 namespace glint {
@@ -15,9 +16,9 @@ using Plane = Eigen::Hyperplane<double, 3>;
 
 constexpr double kVoxelRel = 0.02;       // of the focus distance: one point a voxel counts
 constexpr double kToleranceRel = 0.012;  // of the focus distance
-constexpr double kMaxBelow = 0.08;       // share of the points that may lie below
+constexpr double kMaxBelow = 0.15;       // share of the points that may lie below: what a floor or the object mirrors
 constexpr double kMinShare = 0.12;       // share of the points that must lie on the plane
-constexpr size_t kMinInliers = 15;
+constexpr double kMinInliers = 15;
 constexpr int kTrials = 3000;
 constexpr int kSectors = 12;
 
@@ -50,15 +51,19 @@ bool CamerasAbove(const std::vector<Eigen::Vector3d>& cameras, double margin, Pl
   return above >= 0.95 * static_cast<double>(cameras.size());
 }
 
-// Number of points on the plane; 0 if too many lie below.
-size_t Support(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance) {
-  size_t on = 0, below = 0;
+// Points on the plane, each counting less the farther it is off (MSAC, Torr and Zisserman 2000): the ground is flatter
+// than the tolerance, and what else has as many points near a plane, as a low object's flanks do, is not. Points below
+// speak against it; 0 if too many do.
+double Support(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance) {
+  double on = 0;
+  size_t below = 0;
   for (const Eigen::Vector3d& p : points) {
     const double d = plane.signedDistance(p);
-    on += std::abs(d) < tolerance;
+    on += std::max(0.0, 1 - Square(d / tolerance));
     below += d < -3 * tolerance;
   }
-  return static_cast<double>(below) > kMaxBelow * static_cast<double>(points.size()) ? 0 : on;
+  return static_cast<double>(below) > kMaxBelow * static_cast<double>(points.size()) ? 0
+                                                                                     : on - static_cast<double>(below);
 }
 
 Plane FitPlane(const std::vector<Eigen::Vector3d>& points, const Plane& from, double tolerance) {
@@ -104,14 +109,14 @@ std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint
   GLINT_CHECK_EQ(use.size(), scene.points.size());
   if (!(focus.distance > 0)) return std::nullopt;
   const std::vector<Eigen::Vector3d> points = ThinnedPoints(scene, use, focus);
-  if (points.size() < kMinInliers) return std::nullopt;
+  if (static_cast<double>(points.size()) < kMinInliers) return std::nullopt;
   const double tolerance = kToleranceRel * focus.distance;
   std::vector<Eigen::Vector3d> cameras;
   for (const View& view : scene.views) cameras.push_back(view.Center());
 
   std::mt19937 random(1);
   auto pick = [&] { return points[random() % points.size()]; };
-  size_t best_support = 0;
+  double best_support = 0;
   Plane best;
   for (int trial = 0; trial < kTrials; ++trial) {
     const Eigen::Vector3d a = pick(), b = pick(), c = pick();
@@ -119,7 +124,7 @@ std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint
     if (n.norm() < 1e-3 * focus.distance * focus.distance) continue;  // too narrow to carry a plane
     Plane plane(n.normalized(), a);
     if (!CamerasAbove(cameras, 2 * tolerance, plane)) continue;
-    const size_t support = Support(points, plane, tolerance);
+    const double support = Support(points, plane, tolerance);
     if (support > best_support) {
       best_support = support;
       best = plane;
@@ -128,8 +133,7 @@ std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint
   if (best_support < kMinInliers) return std::nullopt;
   for (int i = 0; i < 3; ++i) best = FitPlane(points, best, tolerance);
   if (!CamerasAbove(cameras, 2 * tolerance, best)) return std::nullopt;
-  if (static_cast<double>(Support(points, best, tolerance)) < kMinShare * static_cast<double>(points.size()))
-    return std::nullopt;
+  if (Support(points, best, tolerance) < kMinShare * static_cast<double>(points.size())) return std::nullopt;
   if (best.signedDistance(focus.center) < -0.1 * focus.distance) return std::nullopt;
   if (!Surrounds(points, best, tolerance, focus)) return std::nullopt;
   return GroundPlane{best, Spread(points, best, tolerance)};
