@@ -10,6 +10,7 @@
 
 #include "core/options.h"
 #include "refine/band_operator.h"
+#include "refine/foot_places.h"
 #include "refine/surface_constraints.h"
 #include "refine/thickness.h"
 #include "sdf/level_set.h"
@@ -59,6 +60,7 @@ struct StepInput {
   inline static const std::vector<Tilt> kNoTilts = {};
   const std::vector<Tilt>& tilts = kNoTilts;  // of the normals, from shading and normal maps
   const Unresolved* unresolved = nullptr;     // where the seed is held; null: nowhere
+  const FootPlaces* foot = nullptr;           // where no gap loosens the seed; null: nowhere
 };
 
 LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options, StepSummary* summary);

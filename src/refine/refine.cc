@@ -21,6 +21,7 @@
 #include "sdf/mesh_to_level_set.h"
 #include "sdf/rebuild.h"
 #include "seed/build_seed.h"
+#include "seed/foot.h"
 
 namespace glint {
 
@@ -64,13 +65,13 @@ class Refiner {
         highlights_(MakeHighlights()),
         tilts_(input.scene, input.lights.empty() ? nullptr : input.images, input.normals, options.tilts, frame_,
                progress),
-        known_(input, options, frame_, progress) {
-    seed_ = frame_.FromWorld(TriangleMesh{input.seed.vertices, input.seed.faces, {}, {}, {}, {}});
-    seed_.normals = ComputePseudoNormals(seed_, BuildEdgeTopology(seed_)).vertex;
-    surface_ = seed_;
-    for (const auto& [name, values] : input.seed.scalars)
-      for (size_t v = 0; name == kFineScalar && v < values.size(); ++v)
-        if (values[v] > 0) fine_.push_back(seed_.vertices[v]);
+        known_(input, options, frame_, progress),
+        seed_(UnitSeed()),
+        foot_(seed_, SeedScalar(kFootScalar)),
+        surface_(seed_) {
+    const std::vector<float> fine = SeedScalar(kFineScalar);
+    for (size_t v = 0; v < fine.size(); ++v)
+      if (fine[v] > 0) fine_.push_back(seed_.vertices[v]);
     summary_.bends_like_seed = options.bend != "flat";
   }
 
@@ -93,6 +94,9 @@ class Refiner {
 
  private:
   HighlightContacts MakeHighlights() const;
+  TriangleMesh UnitSeed() const;
+  // A scalar of the seed's vertices; empty if it has none of that name.
+  std::vector<float> SeedScalar(const std::string& name) const;
   // Four times the surface takes four times as long: the steps of progress are weighed so.
   static size_t StepsOfIteration(int level) { return size_t{1} << (2 * level); }
   int FirstLevel();
@@ -108,15 +112,17 @@ class Refiner {
   const RefineOptions& options_;
   Progress& progress_;
   const UnitFrame frame_;
-  TriangleMesh seed_, surface_;
+  HighlightContacts highlights_;
+  PhotoTilts tilts_;
+  KnownPlaces known_;
+  const TriangleMesh seed_;
+  const FootPlaces foot_;
+  TriangleMesh surface_;
   LevelSet field_;  // of the surface; empty before the first step
   LevelSet seed_field_;
   int steps_left_out_ = 0;
-  double way_from_seed_ = 0;  // the largest of the surface's vertices so far
-  HighlightContacts highlights_;
+  double way_from_seed_ = 0;           // the largest of the surface's vertices so far
   std::vector<Eigen::Vector3d> fine_;  // of the seed, finer than it is elsewhere
-  PhotoTilts tilts_;
-  KnownPlaces known_;
   RefineSummary summary_;
 };
 
@@ -134,6 +140,18 @@ int Refiner::FirstLevel() {
                     "--set refine.voxel_rel={:.2g}",
                     thinnest, options_.voxel_rel, thinnest / kVoxelsAWall));
   return level;
+}
+
+TriangleMesh Refiner::UnitSeed() const {
+  TriangleMesh seed = frame_.FromWorld(TriangleMesh{input_.seed.vertices, input_.seed.faces, {}, {}, {}, {}});
+  seed.normals = ComputePseudoNormals(seed, BuildEdgeTopology(seed)).vertex;
+  return seed;
+}
+
+std::vector<float> Refiner::SeedScalar(const std::string& name) const {
+  for (const auto& [scalar, values] : input_.seed.scalars)
+    if (scalar == name) return values;
+  return {};
 }
 
 HighlightContacts Refiner::MakeHighlights() const {
@@ -167,7 +185,7 @@ LevelSet Refiner::Step(const LevelSet& seed_field, bool undecided, StepSummary& 
                     : undecided && options_.bend == "auto" ? Bend::kEither
                                                            : Bend::kLikeSeed;
   LevelSet stepped =
-      VariationalStep({field_, seed_field, bend, area, contacts, known_.points(), outline, tilts, &unresolved},
+      VariationalStep({field_, seed_field, bend, area, contacts, known_.points(), outline, tilts, &unresolved, &foot_},
                       options_.level_set, &summary);
   summary_.bends_like_seed = summary.bends_like_seed;
   return stepped;

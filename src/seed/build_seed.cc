@@ -12,6 +12,7 @@
 #include "highlights/sight_colors.h"
 #include "sdf/csg.h"
 #include "seed/changed_parts.h"
+#include "seed/foot.h"
 #include "seed/outline_rim.h"
 #include "seed/rim_points.h"
 #include "seed/shape.h"
@@ -256,6 +257,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   if (images && options.open_hollows)
     out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, out.outline, *images, s, progress);
   if (out.smooth.vertices.size() != faired.vertices.size()) MarkFine(faired, out.smooth);
+  if (choice.ground) MarkFoot(*choice.ground, out.smooth);
   for (int point : shape.sparse.scene_point)
     if (point >= 0) out.point_used[point] = 1;
   for (int point : shape.sparse.beside) out.point_used[point] = 1;

@@ -46,7 +46,8 @@ enum class PointFate : uint8_t {
 
 struct SeedResult {
   TriangleMesh mesh;                   // the sparse surface as it is: closed, oriented outward, one piece
-  TriangleMesh smooth;                 // the same, faired through the points: what the level set starts on; kFineScalar
+  TriangleMesh smooth;                 // the same, faired through the points: what the level set starts on;
+                                       // kFineScalar, kFootScalar
   std::vector<uint8_t> point_used;     // per scene point: 1 for a reliable point of the object's surface
   std::vector<PointFate> fate;         // per scene point
   std::vector<OutlineSample> outline;  // of the object, as far as the views confirm each other

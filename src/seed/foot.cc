@@ -2,7 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
+#include "geometry/edge_topology.h"
+#include "geometry/pseudo_normals.h"
 #include "seed/convex_hull.h"
 
 namespace glint {
@@ -11,6 +14,9 @@ namespace {
 constexpr int kBaseGrid = 24;         // points across the foot
 constexpr double kFootHeight = 0.12;  // of the object's height: points lower than this show where its foot is
 constexpr size_t kMinFootPoints = 3;
+// What of the seed is on the ground: so near it, of the diagonal, and facing it so much.
+constexpr double kOnGroundRel = 0.01;
+constexpr double kFacingGround = 0.7;
 
 // Where the object stands: the part of the ground below its lowest points.
 class Foot {
@@ -61,6 +67,18 @@ class Foot {
 };
 
 }  // namespace
+
+void MarkFoot(const GroundPlane& ground, TriangleMesh& seed) {
+  const std::vector<Eigen::Vector3d> normals = ComputePseudoNormals(seed, BuildEdgeTopology(seed)).vertex;
+  const double near = kOnGroundRel * Diagonal(seed);
+  std::vector<float> foot(seed.vertices.size());
+  for (size_t v = 0; v < foot.size(); ++v)
+    foot[v] =
+        ground.plane.signedDistance(seed.vertices[v]) < near && normals[v].dot(ground.plane.normal()) < -kFacingGround
+            ? 1.0F
+            : 0.0F;
+  seed.scalars.emplace_back(kFootScalar, std::move(foot));
+}
 
 std::vector<Eigen::Vector3d> FootPoints(const Scene& scene, const ObjectChoice& choice) {
   return Foot(scene, choice).Points();

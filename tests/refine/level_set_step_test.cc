@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "geometry/triangle_mesh.h"
 #include "sdf/mesh_to_level_set.h"
 #include "tests/support/shapes.h"
@@ -42,6 +44,35 @@ TEST(LevelSetStep, DoesNotBendLikeASeedOfFacets) {
   const StepSummary either = StepFrom(1, Bend::kEither);
   EXPECT_FALSE(either.bends_like_seed);
   EXPECT_LT(either.energy_after, StepFrom(1, Bend::kLikeSeed).energy_after);
+}
+
+// Knowledge all around says that the surface is farther out, and turns as it would if that went on below.
+TEST(LevelSetStep, TheFootDoesNotFollowItsRim) {
+  TriangleMesh mesh = testing::Icosphere(4);
+  for (Eigen::Vector3d& v : mesh.vertices) v *= kRadius;
+  mesh.normals = testing::Icosphere(4).vertices;
+  const LevelSet surface = MeshToLevelSet(mesh, kVoxel, {.half_width_voxels = 4});
+  const LevelSet seed = MeshToLevelSet(mesh, kVoxel, {.half_width_voxels = 9});
+  std::vector<SurfacePoint> points;
+  std::vector<float> on_foot;
+  for (const Eigen::Vector3d& n : mesh.normals) {
+    on_foot.push_back(n.z() < -0.8 ? 1.0F : 0.0F);
+    if (n.z() < -0.7) continue;
+    SurfacePoint point;
+    point.position = (kRadius + 0.5 * kVoxel) * n;
+    point.normal = n;
+    point.sigma = 0.05 * kVoxel;
+    points.push_back(point);
+  }
+  const auto moved_below = [&](const FootPlaces& foot) {
+    const LevelSet stepped = VariationalStep(
+        {surface, seed, Bend::kLikeSeed, SurfaceArea(mesh), {}, points, {}, StepInput::kNoTilts, nullptr, &foot}, {},
+        nullptr);
+    return -stepped.Value({0, 0, -kRadius});
+  };
+  const double loose = moved_below(FootPlaces(mesh, {})), held = moved_below(FootPlaces(mesh, on_foot));
+  EXPECT_GT(loose, 0.2 * kVoxel);
+  EXPECT_LT(std::abs(held), 0.4 * loose);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -13,6 +14,7 @@
 #include "geometry/edge_topology.h"
 #include "geometry/mesh_checks.h"
 #include "geometry/pseudo_normals.h"
+#include "seed/foot.h"
 #include "seed/scene_layout.h"
 #include "seed/sparse_surface.h"
 #include "simulated_scene.h"
@@ -194,6 +196,24 @@ TEST(BuildSeed, FewPointsOfAThinShellGiveASoundSeed) {
 }
 
 // A car's hood on a floor without texture: the plane that most points lie on is the object.
+TEST(BuildSeed, MarksWhereTheObjectStands) {
+  Scene scene = DomeScene(36, 5);
+  AddSphere(scene, 300);
+  AddGround(scene, -1, 4, 30);
+  const SeedResult seed = BuildSeed(scene, Coarse());
+  const auto foot = std::find_if(seed.smooth.scalars.begin(), seed.smooth.scalars.end(),
+                                 [](const auto& scalar) { return scalar.first == kFootScalar; });
+  ASSERT_NE(foot, seed.smooth.scalars.end());
+  int on_foot = 0;
+  for (size_t v = 0; v < foot->second.size(); ++v) {
+    on_foot += foot->second[v] > 0;
+    const double z = seed.smooth.vertices[v].z();
+    EXPECT_TRUE(foot->second[v] > 0 || z > -0.99) << z;
+    EXPECT_TRUE(foot->second[v] == 0 || z < -0.9) << z;
+  }
+  EXPECT_GT(on_foot, 0);
+}
+
 TEST(BuildSeed, AFlatObjectIsNotTheGround) {
   Scene scene = DomeScene(24, 5);
   const auto seen = [](const Eigen::Vector3d& eye) { return eye.z() > 0.5; };
