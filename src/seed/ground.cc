@@ -14,11 +14,18 @@ namespace {
 
 using Plane = Eigen::Hyperplane<double, 3>;
 
-constexpr double kVoxelRel = 0.02;       // of the focus distance: one point a voxel counts
-constexpr double kToleranceRel = 0.012;  // of the focus distance
-constexpr double kMaxBelow = 0.15;       // share of the points that may lie below: what a floor or the object mirrors
-constexpr double kMinShare = 0.12;       // share of the points that must lie on the plane
-constexpr double kMinInliers = 15;
+constexpr double kVoxelRel = 0.02;          // of the focus distance: one point a voxel counts
+constexpr double kBelowRel = 0.036;         // of the focus distance: lower than this is below
+constexpr double kMaxBelow = 0.08;          // share of the points that may lie below
+constexpr double kMarginRel = 0.024;        // of the focus distance: cameras are at least so far above
+constexpr double kLeastSpreadRel = 0.0012;  // of the focus distance
+// How near to the plane its points lie, of the focus distance, and how many and what share of all there must be.
+struct Flatness {
+  double tolerance_rel, min_points, min_share;
+};
+// A floor whose points lie on one plane is told from the flanks of a low object by that, and few are enough; rougher
+// ground has to be told without.
+constexpr std::array<Flatness, 2> kFlatness = {{{0.003, 10, 0.06}, {0.012, 15, 0.12}}};
 constexpr int kTrials = 3000;
 constexpr int kSectors = 12;
 
@@ -53,17 +60,18 @@ bool CamerasAbove(const std::vector<Eigen::Vector3d>& cameras, double margin, Pl
 
 // Points on the plane, each counting less the farther it is off (MSAC, Torr and Zisserman 2000): the ground is flatter
 // than the tolerance, and what else has as many points near a plane, as a low object's flanks do, is not. Points below
-// speak against it; 0 if too many do.
-double Support(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance) {
+// speak against it, twice; 0 if too many do.
+double Support(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance, double below_limit) {
   double on = 0;
   size_t below = 0;
   for (const Eigen::Vector3d& p : points) {
     const double d = plane.signedDistance(p);
     on += std::max(0.0, 1 - Square(d / tolerance));
-    below += d < -3 * tolerance;
+    below += d < -below_limit;
   }
-  return static_cast<double>(below) > kMaxBelow * static_cast<double>(points.size()) ? 0
-                                                                                     : on - static_cast<double>(below);
+  return static_cast<double>(below) > kMaxBelow * static_cast<double>(points.size())
+             ? 0
+             : on - 2 * static_cast<double>(below);
 }
 
 Plane FitPlane(const std::vector<Eigen::Vector3d>& points, const Plane& from, double tolerance) {
@@ -81,13 +89,13 @@ Plane FitPlane(const std::vector<Eigen::Vector3d>& points, const Plane& from, do
 }
 
 // Three robust standard deviations of the points on the plane, within sensible limits.
-double Spread(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance) {
+double Spread(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance, double least) {
   std::vector<double> distances;
   for (const Eigen::Vector3d& p : points)
     if (plane.absDistance(p) < tolerance) distances.push_back(plane.absDistance(p));
   if (distances.empty()) return tolerance;
   std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
-  return std::clamp(3 * 1.4826 * distances[distances.size() / 2], 0.1 * tolerance, tolerance);
+  return std::clamp(3 * 1.4826 * distances[distances.size() / 2], least, tolerance);
 }
 
 // The plane must reach round below the focus: points on it in most directions from the foot of the focus.
@@ -103,17 +111,12 @@ bool Surrounds(const std::vector<Eigen::Vector3d>& points, const Plane& plane, d
   return sectors.size() >= kSectors * 2 / 3;
 }
 
-}  // namespace
-
-std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint8_t>& use, const Focus& focus) {
-  GLINT_CHECK_EQ(use.size(), scene.points.size());
-  if (!(focus.distance > 0)) return std::nullopt;
-  const std::vector<Eigen::Vector3d> points = ThinnedPoints(scene, use, focus);
-  if (static_cast<double>(points.size()) < kMinInliers) return std::nullopt;
-  const double tolerance = kToleranceRel * focus.distance;
-  std::vector<Eigen::Vector3d> cameras;
-  for (const View& view : scene.views) cameras.push_back(view.Center());
-
+// The plane that most points lie on within the tolerance.
+std::optional<GroundPlane> FindPlane(const std::vector<Eigen::Vector3d>& points,
+                                     const std::vector<Eigen::Vector3d>& cameras, const Focus& focus,
+                                     const Flatness& flatness) {
+  const double tolerance = flatness.tolerance_rel * focus.distance, below = kBelowRel * focus.distance;
+  const double margin = kMarginRel * focus.distance;
   std::mt19937 random(1);
   auto pick = [&] { return points[random() % points.size()]; };
   double best_support = 0;
@@ -123,20 +126,35 @@ std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint
     const Eigen::Vector3d n = (b - a).cross(c - a);
     if (n.norm() < 1e-3 * focus.distance * focus.distance) continue;  // too narrow to carry a plane
     Plane plane(n.normalized(), a);
-    if (!CamerasAbove(cameras, 2 * tolerance, plane)) continue;
-    const double support = Support(points, plane, tolerance);
+    if (!CamerasAbove(cameras, margin, plane)) continue;
+    const double support = Support(points, plane, tolerance, below);
     if (support > best_support) {
       best_support = support;
       best = plane;
     }
   }
-  if (best_support < kMinInliers) return std::nullopt;
+  if (best_support < flatness.min_points) return std::nullopt;
   for (int i = 0; i < 3; ++i) best = FitPlane(points, best, tolerance);
-  if (!CamerasAbove(cameras, 2 * tolerance, best)) return std::nullopt;
-  if (Support(points, best, tolerance) < kMinShare * static_cast<double>(points.size())) return std::nullopt;
+  if (!CamerasAbove(cameras, margin, best)) return std::nullopt;
+  if (Support(points, best, tolerance, below) < flatness.min_share * static_cast<double>(points.size()))
+    return std::nullopt;
   if (best.signedDistance(focus.center) < -0.1 * focus.distance) return std::nullopt;
   if (!Surrounds(points, best, tolerance, focus)) return std::nullopt;
-  return GroundPlane{best, Spread(points, best, tolerance)};
+  return GroundPlane{best, Spread(points, best, tolerance, kLeastSpreadRel * focus.distance)};
+}
+
+}  // namespace
+
+std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint8_t>& use, const Focus& focus) {
+  GLINT_CHECK_EQ(use.size(), scene.points.size());
+  if (!(focus.distance > 0)) return std::nullopt;
+  const std::vector<Eigen::Vector3d> points = ThinnedPoints(scene, use, focus);
+  if (points.size() < 3) return std::nullopt;
+  std::vector<Eigen::Vector3d> cameras;
+  for (const View& view : scene.views) cameras.push_back(view.Center());
+  for (const Flatness& flatness : kFlatness)
+    if (auto ground = FindPlane(points, cameras, focus, flatness)) return ground;
+  return std::nullopt;
 }
 
 }  // namespace glint
