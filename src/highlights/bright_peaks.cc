@@ -31,7 +31,7 @@ class Surroundings {
     const uint16_t* below = blurred_.ptr<uint16_t>(std::min((y + 1) / 2, blurred_.rows - 1));
     for (int x = 0; x < blurred_.cols; ++x) half_[x] = Middle(above[x], below[x]);
     half_[blurred_.cols] = half_[blurred_.cols - 1];
-    for (int x = 0; x < width_ / 2; ++x) out[2 * x] = half_[x], out[2 * x + 1] = Middle(half_[x], half_[x + 1]);
+    for (ptrdiff_t x = 0; x < width_ / 2; ++x) out[2 * x] = half_[x], out[2 * x + 1] = Middle(half_[x], half_[x + 1]);
     if (width_ % 2 == 1) out[width_ - 1] = half_[width_ / 2];
   }
 

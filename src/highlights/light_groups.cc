@@ -101,7 +101,7 @@ LightGroups GroupInOrder(const std::vector<LightShows>& lights, size_t n) {
   LightGroups best;
   best.group_of_view.assign(n, 0);
   double shortest = n > 0 ? grouping.Length(best.group_of_view, 1) : 0;
-  for (int count = 2; count <= kMaxGroups && n >= static_cast<size_t>(count * kMinViews); ++count) {
+  for (int count = 2; count <= kMaxGroups && n >= static_cast<size_t>(count) * kMinViews; ++count) {
     // Groups are first told apart by which of `count` lights a view shows.
     std::vector<size_t> chosen(count);
     for (int g = 0; g < count; ++g) chosen[g] = g;

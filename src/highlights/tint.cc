@@ -20,8 +20,8 @@ class Colors {
   explicit Colors(const cv::Mat& image) : read_(image), size_(image.size()) {}
 
   std::array<uint16_t, 3> At(double x, double y) const {
-    return read_(std::clamp(static_cast<int>(x + 0.5), 0, size_.width - 1),
-                 std::clamp(static_cast<int>(y + 0.5), 0, size_.height - 1));
+    return read_(std::clamp(static_cast<int>(std::lround(x)), 0, size_.width - 1),
+                 std::clamp(static_cast<int>(std::lround(y)), 0, size_.height - 1));
   }
 
  private:

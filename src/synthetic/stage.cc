@@ -73,7 +73,7 @@ SurfaceHit Stage::Trace(const Vector3d& origin, const Vector3d& direction, bool 
 }
 
 std::optional<Eigen::Vector2d> Stage::SeenAt(const StageView& view, const SurfaceHit& point) const {
-  const auto px = view.Project(point.position);
+  auto px = view.Project(point.position);
   if (!px || !view.Contains(*px)) return std::nullopt;
   const Vector3d center = view.Center(), direction = (point.position - center).normalized();
   if (direction.dot(point.normal) >= 0) return std::nullopt;
