@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -113,17 +114,25 @@ void KeepWhatAgrees(const Work& work, std::vector<Candidate>& candidates, intern
   summary.num_trusted_views = candidates.size();
 }
 
-// Leaves out what no two other views have beside it: a wrong outline that touches what the others leave room for.
-std::vector<OutlineSample> Supported(const Work& work, const std::vector<OutlineSample>& outline) {
+struct Supported {
+  std::vector<OutlineSample> outline;
+  size_t num_judged = 0;  // those that two other views have something beside
+};
+
+// Leaves out what no two other views have beside it: a wrong outline that touches what the others leave room for. From
+// few sides that is true of many right ones, too, which says nothing of the rest.
+Supported WhatIsSupported(const Work& work, const std::vector<OutlineSample>& outline) {
   const OutlineNeighbors neighbors(work.scene, outline);
-  std::vector<uint8_t> keep(outline.size());
+  std::vector<uint8_t> keep(outline.size()), judged(outline.size());
   ParallelFor(outline.size(), 64, [&](size_t i) {
     const Support s = neighbors.Of(i, kBesideRel * work.diagonal);
-    keep[i] = s.views >= 3 && std::abs(s.offset) < kExcessRel * work.diagonal;
+    judged[i] = s.views >= 3;
+    keep[i] = judged[i] && std::abs(s.offset) < kExcessRel * work.diagonal;
   });
-  std::vector<OutlineSample> out;
+  Supported out;
+  out.num_judged = std::count(judged.begin(), judged.end(), 1);
   for (size_t i = 0; i < outline.size(); ++i)
-    if (keep[i]) out.push_back(outline[i]);
+    if (keep[i]) out.outline.push_back(outline[i]);
   return out;
 }
 
@@ -160,9 +169,12 @@ bool Confirm(const Work& work, std::vector<Candidate> candidates, internal::Mask
   if (candidates.size() < kMinViews) return false;
   KeepWhatAgrees(work, candidates, masks, outline, s, progress);
   const bool most_views = s.num_trusted_views >= kMinViews && 2 * s.num_trusted_views >= s.num_views;
-  if (most_views && found) outline = Supported(work, outline);
-  // Else most of what was found is wrong.
-  const bool most_places = !found || 2 * outline.size() >= s.num_samples;
+  bool most_places = true;  // else most of what was found is wrong
+  if (most_views && found) {
+    Supported supported = WhatIsSupported(work, outline);
+    most_places = 2 * outline.size() * supported.outline.size() >= s.num_samples * supported.num_judged;
+    outline = std::move(supported.outline);
+  }
   if (!most_views || !most_places) {
     outline.clear();
     masks.masks.clear();

@@ -131,6 +131,24 @@ TEST_F(Outlines, AreFoundInPhotographs) {
   ExpectOnBall(s.outline(), 0.015, 0.03);
 }
 
+// From few sides most places have no other view's beside them.
+TEST_F(Outlines, AreFoundFromFewSides) {
+  Scene few;
+  std::vector<cv::Mat> photographs;
+  for (size_t i = 0; i < scene_->views.size(); i += scene_->views.size() / 8) {
+    few.views.push_back(scene_->views[i]);
+    photographs.push_back((*photographs_)[i]);
+  }
+  const TriangleMesh rough = Ball(0.9);
+  SilhouetteSummary summary;
+  const Silhouettes s = FindSilhouettes(few, MemoryImages(photographs), {rough, {}}, {}, &summary);
+  EXPECT_EQ(summary.source, "photographs");
+  EXPECT_EQ(summary.num_trusted_views, few.views.size());
+  EXPECT_GT(s.outline().size(), 100u);
+  for (const OutlineSample& sample : s.outline())
+    EXPECT_NEAR(few.views[sample.view].Center().cross(sample.ray).norm(), kBallRadius, 0.03);
+}
+
 // Every fourth mask lacks the upper half of the ball.
 TEST_F(Outlines, HullOfMostIsTheBallWhereSomeMasksAreWrong) {
   std::vector<internal::ViewMask> masks;
