@@ -239,7 +239,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   Silhouettes silhouettes;
   for (int pass = 0; pass < kOutlinePasses && images && !made.shape.sparse.mesh.empty(); ++pass)
     if (!FollowOutlines(scene, alone, options, *images, made, s, silhouettes, progress)) break;
-  out.outline = silhouettes.outline();
+  out.outline = silhouettes.rays();
   const Shape& shape = made.shape;
   reliability = std::move(made.reliability);
   choice = std::move(made.choice);
@@ -255,7 +255,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   const TriangleMesh faired = Subdivided(shape);
   out.smooth = s.outlines_used ? WithRim(scene, silhouettes, faired) : faired;
   if (images && options.open_hollows)
-    out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, out.outline, *images, s, progress);
+    out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, silhouettes.outline(), *images, s, progress);
   if (out.smooth.vertices.size() != faired.vertices.size()) MarkFine(faired, out.smooth);
   if (choice.ground) MarkFoot(*choice.ground, out.smooth);
   for (int point : shape.sparse.scene_point)

@@ -23,7 +23,7 @@ using internal::Work;
 struct Silhouettes::Impl {
   Scene views;  // without points
   internal::MaskSet masks;
-  std::vector<OutlineSample> outline;
+  std::vector<OutlineSample> outline, rays;
 };
 
 namespace {
@@ -37,6 +37,9 @@ constexpr size_t kMinViews = 4;
 constexpr int kMaxRounds = 4;
 constexpr int kHullRounds = 3;       // of outlines looked for in the photographs, each around what the last ones leave
 constexpr double kBesideRel = 0.03;  // of the diagonal: of another view's sample that supports one
+// Of a view's places that can be told, those that are right, for the rest to be believed; as if it had so many more
+// that are as right as all views' are.
+constexpr double kRightShare = 0.9, kUsualPlaces = 10;
 constexpr double kGroundRel = 0.02;  // of the diagonal: lower than this an outline may be a shadow's
 
 // Views spread over all of them.
@@ -115,24 +118,37 @@ void KeepWhatAgrees(const Work& work, std::vector<Candidate>& candidates, intern
 }
 
 struct Supported {
-  std::vector<OutlineSample> outline;
-  size_t num_judged = 0;  // those that two other views have something beside
+  std::vector<OutlineSample> outline, rays;
+  size_t num_right = 0, num_judged = 0;  // of those that two other views have something beside
 };
 
-// Leaves out what no two other views have beside it: a wrong outline that touches what the others leave room for. From
-// few sides that is true of many right ones, too, which says nothing of the rest.
+// Leaves out what two other views have beside it, and elsewhere: a wrong outline that touches what the others leave
+// room for. From few sides most places have nothing beside them; those of views that are right where it can be told
+// stay.
 Supported WhatIsSupported(const Work& work, const std::vector<OutlineSample>& outline) {
   const OutlineNeighbors neighbors(work.scene, outline);
-  std::vector<uint8_t> keep(outline.size()), judged(outline.size());
+  enum class Verdict : uint8_t { kNone, kRight, kWrong };
+  std::vector<Verdict> verdict(outline.size());
   ParallelFor(outline.size(), 64, [&](size_t i) {
     const Support s = neighbors.Of(i, kBesideRel * work.diagonal);
-    judged[i] = s.views >= 3;
-    keep[i] = judged[i] && std::abs(s.offset) < kExcessRel * work.diagonal;
+    if (s.views >= 3) verdict[i] = std::abs(s.offset) < kExcessRel * work.diagonal ? Verdict::kRight : Verdict::kWrong;
   });
+  std::vector<size_t> right(work.scene.views.size(), 0), judged(right);
   Supported out;
-  out.num_judged = std::count(judged.begin(), judged.end(), 1);
-  for (size_t i = 0; i < outline.size(); ++i)
-    if (keep[i]) out.outline.push_back(outline[i]);
+  for (size_t i = 0; i < outline.size(); ++i) {
+    right[outline[i].view] += verdict[i] == Verdict::kRight;
+    judged[outline[i].view] += verdict[i] != Verdict::kNone;
+    out.num_right += verdict[i] == Verdict::kRight;
+    out.num_judged += verdict[i] != Verdict::kNone;
+  }
+  const double usual = static_cast<double>(out.num_right) / std::max<double>(1, static_cast<double>(out.num_judged));
+  for (size_t i = 0; i < outline.size(); ++i) {
+    const size_t v = outline[i].view;
+    const bool trusted_view = static_cast<double>(right[v]) + kUsualPlaces * usual >=
+                              kRightShare * (static_cast<double>(judged[v]) + kUsualPlaces);
+    if (verdict[i] == Verdict::kRight) out.outline.push_back(outline[i]);
+    if (verdict[i] == Verdict::kRight || (verdict[i] == Verdict::kNone && trusted_view)) out.rays.push_back(outline[i]);
+  }
   return out;
 }
 
@@ -158,9 +174,11 @@ bool ShowTheObject(const std::vector<Candidate>& candidates) {
 
 // Whether the views confirm each other; only then are there an outline and masks.
 bool Confirm(const Work& work, std::vector<Candidate> candidates, internal::MaskSet& masks,
-             std::vector<OutlineSample>& outline, SilhouetteSummary& s, Progress& progress) {
+             std::vector<OutlineSample>& outline, std::vector<OutlineSample>& rays, SilhouetteSummary& s,
+             Progress& progress) {
   const bool found = s.source == "photographs";
   outline.clear();
+  rays.clear();
   masks.masks.clear();
   s.num_views = candidates.size();
   s.num_trusted_views = s.num_samples = s.num_trusted_samples = 0;
@@ -172,11 +190,15 @@ bool Confirm(const Work& work, std::vector<Candidate> candidates, internal::Mask
   bool most_places = true;  // else most of what was found is wrong
   if (most_views && found) {
     Supported supported = WhatIsSupported(work, outline);
-    most_places = 2 * outline.size() * supported.outline.size() >= s.num_samples * supported.num_judged;
+    most_places = 2 * outline.size() * supported.num_right >= s.num_samples * supported.num_judged;
     outline = std::move(supported.outline);
+    rays = std::move(supported.rays);
+  } else {
+    rays = outline;
   }
   if (!most_views || !most_places) {
     outline.clear();
+    rays.clear();
     masks.masks.clear();
   }
   s.num_trusted_samples = outline.size();
@@ -215,6 +237,7 @@ Silhouettes::Silhouettes(Silhouettes&&) noexcept = default;
 Silhouettes& Silhouettes::operator=(Silhouettes&&) noexcept = default;
 
 const std::vector<OutlineSample>& Silhouettes::outline() const { return impl_->outline; }
+const std::vector<OutlineSample>& Silhouettes::rays() const { return impl_->rays; }
 
 std::optional<double> Silhouettes::OutsideBy(const Eigen::Vector3d& x) const {
   return internal::OutsideBy(impl_->views, impl_->masks, x);
@@ -234,7 +257,7 @@ Silhouettes FindSilhouettes(const Scene& scene, const ImageSource& images, const
   std::vector<Candidate> candidates = Collect(views, progress, [&](size_t v) { return internal::FromMask(work, v); });
   s.source = "masks";
   if (ShowTheObject(candidates)) {
-    Confirm(work, std::move(candidates), out.impl_->masks, out.impl_->outline, s, progress);
+    Confirm(work, std::move(candidates), out.impl_->masks, out.impl_->outline, out.impl_->rays, s, progress);
     return out;
   }
   s.source = "";
@@ -244,7 +267,7 @@ Silhouettes FindSilhouettes(const Scene& scene, const ImageSource& images, const
   for (int round = 0; round < kHullRounds && (!hull || !hull->empty()); ++round) {
     candidates =
         Collect(views, progress, [&](size_t v) { return internal::FromPhotograph(work, v, hull ? &*hull : nullptr); });
-    if (Confirm(work, candidates, out.impl_->masks, out.impl_->outline, s, progress)) break;
+    if (Confirm(work, candidates, out.impl_->masks, out.impl_->outline, out.impl_->rays, s, progress)) break;
     hull = HullOf(work, candidates);
   }
   return out;

@@ -52,6 +52,8 @@ class Silhouettes {
 
   // Empty where the views do not confirm each other.
   const std::vector<OutlineSample>& outline() const;
+  // The outline and what else touches the object, though from few sides where along its ray is uncertain.
+  const std::vector<OutlineSample>& rays() const;
 
   // How far x is outside of the object by what several trusted views agree on, world units; negative: inside all
   // outlines but at most a few. Nothing where too few views see it.
