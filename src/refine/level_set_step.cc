@@ -59,8 +59,8 @@ namespace {
 // Where the voxels do not carry more than the seed, it is held to a quarter of one.
 constexpr double kHeldSigmaVoxels = 0.25, kHeldLengthVoxels = 2;
 // In a gap between known places the seed is one guess, wrong all over it in one direction: errors are alike over three
-// times the way to the next place, up to this. Not on the foot: the ground says where that is, and what its rim turns
-// by would swing it far below.
+// times the way to the next place, up to this. But it does not go below the foot: what the foot's rim turns by would
+// swing a flat one far into the ground.
 constexpr double kGapLengths = 3, kWidestGap = 0.1, kFootLength = 0.5;
 
 // Of the seed, averaged over the next voxels (1 2 1 along each axis), so that the facets of its mesh are not taken for
@@ -103,13 +103,13 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
     const Eigen::Vector3d normal = length > 1e-12 ? Eigen::Vector3d(g / length) : Eigen::Vector3d::Zero();
     weights.n[i] = normal.cast<float>();
     const bool hold = input.unresolved && input.unresolved->Near(x);
+    const double value = input.seed.Value(x);
     double alike = std::max(options.seed_length_rel, kGapLengths * gaps.At(x, normal, kWidestGap));
-    if (alike > options.seed_length_rel && input.foot && input.foot->At(x, normal))
+    if (alike > options.seed_length_rel && input.foot && input.surface.Value(x) < value && input.foot->At(x, normal))
       alike = kFootLength * options.seed_length_rel;
     const double mu = 1 / Square(options.seed_sigma_rel * alike);
     // m of DESIGN 3.4: near 1 where no contact reaches, near 0 where one does.
     const double pull = hold ? held : mu * static_cast<float>(1 - explained.At(x, normal));
-    const double value = input.seed.Value(x);
     const bool known = std::abs(value) < background - 2 * h;
     weights.pull[i] = known ? static_cast<float>(area * pull) : 0;
     weights.pull_target[i] = static_cast<float>(value);

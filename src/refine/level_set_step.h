@@ -60,7 +60,7 @@ struct StepInput {
   inline static const std::vector<Tilt> kNoTilts = {};
   const std::vector<Tilt>& tilts = kNoTilts;  // of the normals, from shading and normal maps
   const Unresolved* unresolved = nullptr;     // where the seed is held; null: nowhere
-  const FootPlaces* foot = nullptr;           // where no gap loosens the seed; null: nowhere
+  const FootPlaces* foot = nullptr;           // which stays on the ground or is above it; null: none
 };
 
 LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options, StepSummary* summary);

@@ -14,18 +14,18 @@ namespace {
 
 using Plane = Eigen::Hyperplane<double, 3>;
 
-constexpr double kVoxelRel = 0.02;          // of the focus distance: one point a voxel counts
-constexpr double kBelowRel = 0.036;         // of the focus distance: lower than this is below
-constexpr double kMaxBelow = 0.08;          // share of the points that may lie below
-constexpr double kMarginRel = 0.024;        // of the focus distance: cameras are at least so far above
-constexpr double kLeastSpreadRel = 0.0012;  // of the focus distance
+constexpr double kVoxelRel = 0.02;    // of the focus distance: one point a voxel counts
+constexpr double kBelowRel = 0.036;   // of the focus distance: lower than this is below
+constexpr double kMaxBelow = 0.08;    // share of the points that may lie below
+constexpr double kMarginRel = 0.024;  // of the focus distance: cameras are at least so far above
 // How near to the plane its points lie, of the focus distance, and how many and what share of all there must be.
 struct Flatness {
   double tolerance_rel, min_points, min_share;
 };
 // A floor whose points lie on one plane is told from the flanks of a low object by that, and few are enough; rougher
-// ground has to be told without.
-constexpr std::array<Flatness, 2> kFlatness = {{{0.003, 10, 0.06}, {0.012, 15, 0.12}}};
+// ground has to be told without. Where both find the same plane, it is that of the rough one's many points.
+constexpr Flatness kFlat = {0.003, 10, 0.06}, kRough = {0.012, 15, 0.12};
+constexpr double kSameDeg = 0.5;
 constexpr int kTrials = 3000;
 constexpr int kSectors = 12;
 
@@ -88,14 +88,15 @@ Plane FitPlane(const std::vector<Eigen::Vector3d>& points, const Plane& from, do
   return Plane(normal, mean);
 }
 
-// Three robust standard deviations of the points on the plane, within sensible limits.
-double Spread(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double tolerance, double least) {
+// Three robust standard deviations of the points about the plane, within sensible limits.
+double Spread(const std::vector<Eigen::Vector3d>& points, const Plane& plane, const Focus& focus) {
+  const double tolerance = kRough.tolerance_rel * focus.distance;
   std::vector<double> distances;
   for (const Eigen::Vector3d& p : points)
     if (plane.absDistance(p) < tolerance) distances.push_back(plane.absDistance(p));
   if (distances.empty()) return tolerance;
   std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
-  return std::clamp(3 * 1.4826 * distances[distances.size() / 2], least, tolerance);
+  return std::clamp(3 * 1.4826 * distances[distances.size() / 2], 0.1 * tolerance, tolerance);
 }
 
 // The plane must reach round below the focus: points on it in most directions from the foot of the focus.
@@ -140,7 +141,7 @@ std::optional<GroundPlane> FindPlane(const std::vector<Eigen::Vector3d>& points,
     return std::nullopt;
   if (best.signedDistance(focus.center) < -0.1 * focus.distance) return std::nullopt;
   if (!Surrounds(points, best, tolerance, focus)) return std::nullopt;
-  return GroundPlane{best, Spread(points, best, tolerance, kLeastSpreadRel * focus.distance)};
+  return GroundPlane{best, Spread(points, best, focus)};
 }
 
 }  // namespace
@@ -152,9 +153,9 @@ std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint
   if (points.size() < 3) return std::nullopt;
   std::vector<Eigen::Vector3d> cameras;
   for (const View& view : scene.views) cameras.push_back(view.Center());
-  for (const Flatness& flatness : kFlatness)
-    if (auto ground = FindPlane(points, cameras, focus, flatness)) return ground;
-  return std::nullopt;
+  const auto flat = FindPlane(points, cameras, focus, kFlat), rough = FindPlane(points, cameras, focus, kRough);
+  const bool same = flat && rough && flat->plane.normal().dot(rough->plane.normal()) > std::cos(kSameDeg * M_PI / 180);
+  return flat && !same ? flat : rough;
 }
 
 }  // namespace glint

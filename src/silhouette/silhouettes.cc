@@ -141,13 +141,14 @@ Supported WhatIsSupported(const Work& work, const std::vector<OutlineSample>& ou
     out.num_right += verdict[i] == Verdict::kRight;
     out.num_judged += verdict[i] != Verdict::kNone;
   }
+  const bool mostly_alone = 2 * out.num_judged < outline.size();
   const double usual = static_cast<double>(out.num_right) / std::max<double>(1, static_cast<double>(out.num_judged));
   for (size_t i = 0; i < outline.size(); ++i) {
     const size_t v = outline[i].view;
-    const bool trusted_view = static_cast<double>(right[v]) + kUsualPlaces * usual >=
-                              kRightShare * (static_cast<double>(judged[v]) + kUsualPlaces);
+    const bool trusted = mostly_alone && static_cast<double>(right[v]) + kUsualPlaces * usual >=
+                                             kRightShare * (static_cast<double>(judged[v]) + kUsualPlaces);
     if (verdict[i] == Verdict::kRight) out.outline.push_back(outline[i]);
-    if (verdict[i] == Verdict::kRight || (verdict[i] == Verdict::kNone && trusted_view)) out.rays.push_back(outline[i]);
+    if (verdict[i] == Verdict::kRight || (verdict[i] == Verdict::kNone && trusted)) out.rays.push_back(outline[i]);
   }
   return out;
 }
