@@ -1,9 +1,9 @@
 // Triangles in the frame of a tile: what the kernel reads of them. Included by tile_kernel.cc for each target.
-#if defined(GLINT_SDF_TILE_FRAMES_INL_H_) == defined(HWY_TARGET_TOGGLE)  // once a target
-#ifdef GLINT_SDF_TILE_FRAMES_INL_H_
-#undef GLINT_SDF_TILE_FRAMES_INL_H_
+#if defined(GLINT_SDF_TILE_FRAMES_INL_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef GLINT_SDF_TILE_FRAMES_INL_H
+#undef GLINT_SDF_TILE_FRAMES_INL_H
 #else
-#define GLINT_SDF_TILE_FRAMES_INL_H_
+#define GLINT_SDF_TILE_FRAMES_INL_H
 #endif
 
 #include <hwy/highway.h>
@@ -13,6 +13,8 @@
 
 #include "sdf/tile_kernel.h"
 
+// Once a target, each in a namespace of its own.
+// NOLINTBEGIN(misc-definitions-in-headers)
 HWY_BEFORE_NAMESPACE();
 namespace glint::internal::HWY_NAMESPACE {
 
@@ -206,5 +208,6 @@ void ComputeFrames(size_t n, size_t stride, TileScratch& scratch) {
 
 }  // namespace glint::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+// NOLINTEND(misc-definitions-in-headers)
 
-#endif  // GLINT_SDF_TILE_FRAMES_INL_H_
+#endif  // GLINT_SDF_TILE_FRAMES_INL_H

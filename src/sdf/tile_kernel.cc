@@ -79,7 +79,7 @@ void ComputeBlock(const Tile& tile, int block, size_t num_candidates, const Exac
   }
   for (int row = 0; row < 4; ++row) {  // four voxels along z each
     const int x = first[0] + (row >> 1), at = (first[1] + (row & 1)) << 3 | first[2];
-    std::memcpy(out.distance + (x << 6 | at), distance + 4 * row, 4 * sizeof(float));
+    std::memcpy(out.distance + (x << 6 | at), distance + ptrdiff_t{4} * row, 4 * sizeof(float));
     out.active[x] |= uint64_t{active >> (4 * row) & 15} << at;
     out.inside[x] |= uint64_t{(active & inside) >> (4 * row) & 15} << at;
     if constexpr (kWantsClosest)

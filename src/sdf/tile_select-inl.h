@@ -1,10 +1,10 @@
 // Which triangles of a tile may be closest to some voxel of it, or of one of its blocks. Included by tile_kernel.cc for
 // each target.
-#if defined(GLINT_SDF_TILE_SELECT_INL_H_) == defined(HWY_TARGET_TOGGLE)  // once a target
-#ifdef GLINT_SDF_TILE_SELECT_INL_H_
-#undef GLINT_SDF_TILE_SELECT_INL_H_
+#if defined(GLINT_SDF_TILE_SELECT_INL_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef GLINT_SDF_TILE_SELECT_INL_H
+#undef GLINT_SDF_TILE_SELECT_INL_H
 #else
-#define GLINT_SDF_TILE_SELECT_INL_H_
+#define GLINT_SDF_TILE_SELECT_INL_H
 #endif
 
 #include <hwy/highway.h>
@@ -17,6 +17,8 @@
 #include "sdf/tile_frames-inl.h"
 #include "sdf/tile_kernel.h"
 
+// Once a target, each in a namespace of its own.
+// NOLINTBEGIN(misc-definitions-in-headers)
 HWY_BEFORE_NAMESPACE();
 namespace glint::internal::HWY_NAMESPACE {
 
@@ -41,7 +43,8 @@ void ComputeSpheres(size_t stride, TileScratch& scratch) {
 
 Eigen::Vector3d Corner(const TileScratch& scratch, size_t stride, size_t i, int k) {
   const double* from = scratch.corners.data() + i;
-  return {from[(3 * k) * stride], from[(3 * k + 1) * stride], from[(3 * k + 2) * stride]};
+  const size_t x = size_t{3} * k;
+  return {from[x * stride], from[(x + 1) * stride], from[(x + 2) * stride]};
 }
 
 // Of the first n triangles, those that may be closest to some point of the box about `center` with half sizes `half`,
@@ -177,5 +180,6 @@ size_t KeepOnly(size_t count, size_t stride, TileScratch& scratch) {
 
 }  // namespace glint::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+// NOLINTEND(misc-definitions-in-headers)
 
-#endif  // GLINT_SDF_TILE_SELECT_INL_H_
+#endif  // GLINT_SDF_TILE_SELECT_INL_H
