@@ -22,7 +22,7 @@ struct GateOptions {
   double max_incidence_deg = 60;
   double min_half_change_deg = 8;  // views whose half vector differs by less say nothing on paint
   double paint_ratio = 0.55;       // of the candidate's brightness over its body, in the median of the other views
-  int min_other_views = 2;
+  int min_other_views = 3;
   double min_relative_strength = 0.3;  // of the strong ones of the same light
   int image_memory_mb = 512;
 

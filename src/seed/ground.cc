@@ -154,7 +154,9 @@ std::optional<GroundPlane> FindGround(const Scene& scene, const std::vector<uint
   std::vector<Eigen::Vector3d> cameras;
   for (const View& view : scene.views) cameras.push_back(view.Center());
   const auto flat = FindPlane(points, cameras, focus, kFlat), rough = FindPlane(points, cameras, focus, kRough);
-  const bool same = flat && rough && flat->plane.normal().dot(rough->plane.normal()) > std::cos(kSameDeg * M_PI / 180);
+  const bool same =
+      flat && rough && flat->plane.normal().dot(rough->plane.normal()) > std::cos(kSameDeg * M_PI / 180) &&
+      rough->plane.absDistance(flat->plane.projection(focus.center)) < kRough.tolerance_rel * focus.distance;
   return flat && !same ? flat : rough;
 }
 

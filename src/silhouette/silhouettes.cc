@@ -122,9 +122,9 @@ struct Supported {
   size_t num_right = 0, num_judged = 0;  // of those that two other views have something beside
 };
 
-// Leaves out what two other views have beside it, and elsewhere: a wrong outline that touches what the others leave
-// room for. From few sides most places have nothing beside them; those of views that are right where it can be told
-// stay.
+// The outline without what no two other views have beside it: a wrong one that touches what the others leave room for.
+// From few sides most places have nothing beside them, and where along its ray such a one touches is uncertain; that it
+// does is not, in a view that is right where it can be told. From many sides the few that are alone are wrong ones.
 Supported WhatIsSupported(const Work& work, const std::vector<OutlineSample>& outline) {
   const OutlineNeighbors neighbors(work.scene, outline);
   enum class Verdict : uint8_t { kNone, kRight, kWrong };
@@ -191,7 +191,8 @@ bool Confirm(const Work& work, std::vector<Candidate> candidates, internal::Mask
   bool most_places = true;  // else most of what was found is wrong
   if (most_views && found) {
     Supported supported = WhatIsSupported(work, outline);
-    most_places = 2 * outline.size() * supported.num_right >= s.num_samples * supported.num_judged;
+    most_places =
+        supported.num_judged > 0 && 2 * outline.size() * supported.num_right >= s.num_samples * supported.num_judged;
     outline = std::move(supported.outline);
     rays = std::move(supported.rays);
   } else {
