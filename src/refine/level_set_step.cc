@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/square.h"
@@ -143,35 +144,34 @@ LevelSet VariationalStep(const StepInput& input, const LevelSetOptions& options,
   std::vector<double> phi(band.phi().begin(), band.phi().end());
   const auto solve = [&](std::vector<double>& field) {
     const SolveReport solved = system.Solve(options.max_iterations, options.tolerance, field);
-    report.energy_after = solved.final_energy;
     report.solver_iterations += solved.iterations;
-    report.relative_residual = solved.relative_residual;
     return solved;
   };
+  SolveReport solved;
   // The first solve trusts every contact: the seed is no judge of them, while the points have made it.
   for (int k = 0; k < options.reweightings; ++k) {
     system.SetRowWeights(constraints.RobustWeights(phi, k == 0));
-    const SolveReport solved = solve(phi);
+    solved = solve(phi);
     if (k == 0) report.energy_before = solved.initial_energy;
   }
   report.bends_like_seed = input.bend != Bend::kFlat;
   if (input.bend == Bend::kEither) {
     // Under the weights that the other ended with, so that the two energies are of one problem.
-    const StepSummary bent = report;
     std::vector<double> flat = phi;
     system.SetReference({});
-    if (solve(flat).final_energy < bent.energy_after) {
+    const SolveReport solved_flat = solve(flat);
+    if (solved_flat.final_energy < solved.final_energy) {
       report.bends_like_seed = false;
       phi = std::move(flat);
+      solved = solved_flat;
       for (int k = 1; k < options.reweightings; ++k) {
         system.SetRowWeights(constraints.RobustWeights(phi, false));
-        solve(phi);
+        solved = solve(phi);
       }
-    } else {
-      report.energy_after = bent.energy_after;
-      report.relative_residual = bent.relative_residual;
     }
   }
+  report.energy_after = solved.final_energy;
+  report.relative_residual = solved.relative_residual;
   return band.WithValues(std::vector<float>(phi.begin(), phi.end()));
 }
 

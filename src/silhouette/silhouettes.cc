@@ -119,7 +119,7 @@ void KeepWhatAgrees(const Work& work, std::vector<Candidate>& candidates, intern
 
 struct Supported {
   std::vector<OutlineSample> outline, rays;
-  size_t num_right = 0, num_judged = 0;  // of those that two other views have something beside
+  size_t num_judged = 0;  // places that two other views have something beside, right or not
 };
 
 // The outline without what no two other views have beside it: a wrong one that touches what the others leave room for.
@@ -138,16 +138,16 @@ Supported WhatIsSupported(const Work& work, const std::vector<OutlineSample>& ou
   for (size_t i = 0; i < outline.size(); ++i) {
     right[outline[i].view] += verdict[i] == Verdict::kRight;
     judged[outline[i].view] += verdict[i] != Verdict::kNone;
-    out.num_right += verdict[i] == Verdict::kRight;
+    if (verdict[i] == Verdict::kRight) out.outline.push_back(outline[i]);
     out.num_judged += verdict[i] != Verdict::kNone;
   }
   const bool mostly_alone = 2 * out.num_judged < outline.size();
-  const double usual = static_cast<double>(out.num_right) / std::max<double>(1, static_cast<double>(out.num_judged));
+  const double usual =
+      static_cast<double>(out.outline.size()) / std::max<double>(1, static_cast<double>(out.num_judged));
   for (size_t i = 0; i < outline.size(); ++i) {
     const size_t v = outline[i].view;
     const bool trusted = mostly_alone && static_cast<double>(right[v]) + kUsualPlaces * usual >=
                                              kRightShare * (static_cast<double>(judged[v]) + kUsualPlaces);
-    if (verdict[i] == Verdict::kRight) out.outline.push_back(outline[i]);
     if (verdict[i] == Verdict::kRight || (verdict[i] == Verdict::kNone && trusted)) out.rays.push_back(outline[i]);
   }
   return out;
@@ -191,8 +191,8 @@ bool Confirm(const Work& work, std::vector<Candidate> candidates, internal::Mask
   bool most_places = true;  // else most of what was found is wrong
   if (most_views && found) {
     Supported supported = WhatIsSupported(work, outline);
-    most_places =
-        supported.num_judged > 0 && 2 * outline.size() * supported.num_right >= s.num_samples * supported.num_judged;
+    most_places = supported.num_judged > 0 &&
+                  2 * outline.size() * supported.outline.size() >= s.num_samples * supported.num_judged;
     outline = std::move(supported.outline);
     rays = std::move(supported.rays);
   } else {
