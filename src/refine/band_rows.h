@@ -33,4 +33,35 @@ struct BandRows {
   }
 };
 
+// Puts rows together: what is said of one voxel several times becomes one coefficient.
+class RowBuilder {
+ public:
+  explicit RowBuilder(size_t num_voxels) : slot_(num_voxels, -1) {}
+
+  void Push(int32_t v, double c) {
+    int32_t& slot = slot_[static_cast<size_t>(v)];
+    if (slot < 0) {
+      slot = static_cast<int32_t>(voxel_.size());
+      voxel_.push_back(v);
+      sum_.push_back(c);
+    } else {
+      sum_[static_cast<size_t>(slot)] += c;
+    }
+  }
+  void Close(double target, double weight, BandRows& rows) {
+    for (size_t e = 0; e < voxel_.size(); ++e) {
+      rows.Push(voxel_[e], sum_[e]);
+      slot_[static_cast<size_t>(voxel_[e])] = -1;
+    }
+    rows.Close(target, weight);
+    voxel_.clear();
+    sum_.clear();
+  }
+
+ private:
+  std::vector<int32_t> slot_;  // of each voxel of the band, where its sum is; -1: not in this row
+  std::vector<int32_t> voxel_;
+  std::vector<double> sum_;
+};
+
 }  // namespace glint

@@ -2,7 +2,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include <algorithm>
 #include <bit>
 
 #include "core/parallel.h"
@@ -80,20 +79,12 @@ void BandTransfer::Restrict(const std::vector<float>& fine, std::vector<float>& 
 
 BandRows BandTransfer::Restrict(const BandRows& fine) const {
   BandRows coarse;
-  std::vector<std::pair<int32_t, float>> entries;
+  RowBuilder row(coarse_.size());
   for (size_t r = 0; r < fine.size(); ++r) {
-    entries.clear();
     for (size_t e = fine.begin[r]; e < fine.begin[r + 1]; ++e)
       for (unsigned bits = 0; bits < 8; ++bits)
-        entries.emplace_back(parents_[fine.voxel[e]][bits], kWeight[std::popcount(bits)] * fine.coefficient[e]);
-    std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (size_t k = 0; k < entries.size();) {
-      const int32_t voxel = entries[k].first;
-      double sum = 0;
-      for (; k < entries.size() && entries[k].first == voxel; ++k) sum += entries[k].second;
-      coarse.Push(voxel, sum);
-    }
-    coarse.Close(fine.target[r], fine.weight[r]);
+        row.Push(parents_[fine.voxel[e]][bits], kWeight[std::popcount(bits)] * fine.coefficient[e]);
+    row.Close(fine.target[r], fine.weight[r], coarse);
   }
   return coarse;
 }

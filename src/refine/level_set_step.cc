@@ -64,18 +64,6 @@ constexpr double kHeldSigmaVoxels = 0.25, kHeldLengthVoxels = 2;
 // swing a flat one far into the ground.
 constexpr double kGapLengths = 3, kWidestGap = 0.1, kFootLength = 0.5;
 
-// Of the seed, averaged over the next voxels (1 2 1 along each axis), so that the facets of its mesh are not taken for
-// bends. Linear functions stay; what quadratic ones shift by does not bend.
-float SmoothValue(const LevelSet& seed, const Eigen::Vector3d& x) {
-  double sum = 0;
-  for (int i = -1; i <= 1; ++i)
-    for (int j = -1; j <= 1; ++j)
-      for (int k = -1; k <= 1; ++k)
-        sum += (2 - std::abs(i)) * (2 - std::abs(j)) * (2 - std::abs(k)) *
-               seed.Value(x + seed.voxel_size() * Eigen::Vector3d(i, j, k));
-  return static_cast<float>(sum / 64);
-}
-
 }  // namespace
 
 BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSetOptions& options) {
@@ -117,7 +105,8 @@ BandWeights StepWeights(const Band& band, const StepInput& input, const LevelSet
     if (input.bend != Bend::kFlat)
       weights.reference[i] = !known ? std::numeric_limits<float>::quiet_NaN()
                              : hold ? static_cast<float>(value)
-                                    : SmoothValue(input.seed, x);
+                                    // Averaged, so that the facets of its mesh are not taken for bends.
+                                    : static_cast<float>(input.seed.MeanValue(x));
   });
   return weights;
 }

@@ -31,22 +31,31 @@ std::vector<Eigen::Vector3d> StandardNormals(uint64_t seed, size_t count) {
   return out;
 }
 
-// Value and gradient of a field over the band's voxels at a place; false where a voxel is missing.
-bool At(const Band& band, const std::vector<double>& field, const Eigen::Vector3d& x, double& value,
-        Eigen::Vector3d& gradient) {
+// Of one voxel or place, a value of each sample.
+using Samples = Eigen::Array<float, kSamples, 1>;
+
+// Standard deviations at a place whose normal is n: of the samples' values, and of their gradients across n. False
+// where a voxel is missing.
+bool Spread(const Band& band, const std::vector<Samples>& deviations, const Eigen::Vector3d& x,
+            const Eigen::Vector3f& n, float& position, float& normal) {
   std::array<int32_t, 8> voxels;
   std::array<double, 8> weights;
   if (!band.Trilinear(x, voxels, weights)) return false;
-  value = 0;
-  gradient.setZero();
+  Samples value = Samples::Zero();
+  std::array<Samples, 3> gradient = {value, value, value};
   for (int k = 0; k < 8; ++k) {
     if (!band.HasAllNeighbors(voxels[k])) return false;
-    value += weights[k] * field[voxels[k]];
+    const auto weight = static_cast<float>(weights[k]);
+    value += weight * deviations[voxels[k]];
     for (int axis = 0; axis < 3; ++axis)
       gradient[axis] +=
-          weights[k] * (field[band.Neighbor(voxels[k], axis, 1)] - field[band.Neighbor(voxels[k], axis, 0)]);
+          weight * (deviations[band.Neighbor(voxels[k], axis, 1)] - deviations[band.Neighbor(voxels[k], axis, 0)]);
   }
-  gradient /= 2 * band.voxel_size();
+  const Samples along = n[0] * gradient[0] + n[1] * gradient[1] + n[2] * gradient[2];
+  float across = 0;
+  for (int axis = 0; axis < 3; ++axis) across += (gradient[axis] - n[axis] * along).square().mean();
+  position = std::sqrt(value.square().mean());
+  normal = std::sqrt(across) / static_cast<float>(2 * band.voxel_size());
   return true;
 }
 
@@ -73,34 +82,21 @@ SurfaceDeviation PosteriorDeviation(const StepInput& input, const LevelSetOption
   size_t num_lights = 0;
   for (const OrientedPoint& contact : input.contacts)
     num_lights = std::max(num_lights, static_cast<size_t>(contact.light + 1));
-  SurfaceDeviation sum{std::vector<float>(at.size(), 0), std::vector<float>(at.size(), 0)};
-  std::vector<Eigen::Vector3f> normals(at.size(), Eigen::Vector3f::Zero());
+  std::vector<Samples> deviations(band.size());
   for (int sample = 0; sample < kSamples; ++sample) {
     const uint64_t seed = static_cast<uint64_t>(sample) << 32;
     const std::vector<double> noise = constraints.LightNoise(input.contacts, StandardNormals(~seed, num_lights));
     const std::vector<double> deviation = system.Deviation(seed, noise, options.max_iterations, kSampleTolerance);
-    ParallelFor(at.size(), kGrain, [&](size_t i) {
-      double value;
-      Eigen::Vector3d gradient;
-      if (sample == 0) {
-        const Eigen::Vector3d g = input.surface.Gradient(at[i]);
-        if (g.norm() > 0.5) normals[i] = g.normalized().cast<float>();
-      }
-      if (normals[i].isZero() || !At(band, deviation, at[i], value, gradient)) {
-        normals[i].setZero();
-        return;
-      }
-      const Eigen::Vector3d n = normals[i].cast<double>();
-      sum.position[i] += static_cast<float>(value * value);
-      sum.normal[i] += static_cast<float>((gradient - n * n.dot(gradient)).squaredNorm());
-    });
+    for (size_t i = 0; i < deviation.size(); ++i) deviations[i][sample] = static_cast<float>(deviation[i]);
   }
+  SurfaceDeviation out{std::vector<float>(at.size(), static_cast<float>(options.seed_sigma_rel)),
+                       std::vector<float>(at.size(), kUnknownNormal)};
   ParallelFor(at.size(), kGrain, [&](size_t i) {
-    const bool known = !normals[i].isZero();
-    sum.position[i] = known ? std::sqrt(sum.position[i] / kSamples) : static_cast<float>(options.seed_sigma_rel);
-    sum.normal[i] = known ? std::sqrt(sum.normal[i] / kSamples) : kUnknownNormal;
+    const Eigen::Vector3d g = input.surface.Gradient(at[i]);
+    if (g.norm() <= 0.5) return;
+    Spread(band, deviations, at[i], g.normalized().cast<float>(), out.position[i], out.normal[i]);
   });
-  return sum;
+  return out;
 }
 
 }  // namespace glint

@@ -24,12 +24,12 @@ constexpr double kMostTurn = 0.8;
 double ContactWeight(double squared) { return 1 / (1 + squared / 4); }
 double PointWeight(double squared) { return 1 / ((1 + squared / 9) * (1 + squared / 9)); }
 
-bool AddValueRow(const Band& band, const Eigen::Vector3d& x, double weight, BandRows& rows) {
+bool AddValueRow(const Band& band, const Eigen::Vector3d& x, double weight, RowBuilder& row, BandRows& rows) {
   std::array<int32_t, 8> voxels;
   std::array<double, 8> weights;
   if (!band.Trilinear(x, voxels, weights)) return false;
-  for (int k = 0; k < 8; ++k) rows.Push(voxels[k], weights[k]);
-  rows.Close(0, weight);
+  for (int k = 0; k < 8; ++k) row.Push(voxels[k], weights[k]);
+  row.Close(0, weight, rows);
   return true;
 }
 
@@ -63,7 +63,7 @@ Eigen::Vector3d GradientOf(const Band& band, const std::vector<Tap>& taps) {
 // The normal at a contact, as the field's mean gradient over a footprint: a gradient at a mere point costs a smooth
 // field almost nothing, it would answer with a spike. What the current field's mean over the footprint differs from
 // its gradient at the point is carried over, so that at convergence it is the gradient at the point that agrees.
-bool AddGradientRows(const Band& band, const OrientedPoint& contact, double weight, BandRows& rows) {
+bool AddGradientRows(const Band& band, const OrientedPoint& contact, double weight, RowBuilder& row, BandRows& rows) {
   const double footprint = kFootprintShare * contact.reach / band.voxel_size();
   const std::vector<Tap> mean = GaussianTaps(band, contact.position, std::max(footprint, kLeastFootprintVoxels));
   std::array<int32_t, 8> voxels;
@@ -78,10 +78,10 @@ bool AddGradientRows(const Band& band, const OrientedPoint& contact, double weig
   for (int axis = 0; axis < 3; ++axis) {
     for (const Tap& tap : mean) {
       const double c = tap.weight / (2 * band.voxel_size());
-      rows.Push(band.Neighbor(tap.voxel, axis, 1), c);
-      rows.Push(band.Neighbor(tap.voxel, axis, 0), -c);
+      row.Push(band.Neighbor(tap.voxel, axis, 1), c);
+      row.Push(band.Neighbor(tap.voxel, axis, 0), -c);
     }
-    rows.Close(target[axis], weight);
+    row.Close(target[axis], weight, rows);
   }
   return true;
 }
@@ -93,14 +93,14 @@ void SurfaceConstraints::AddContacts(const std::vector<OrientedPoint>& contacts,
   for (size_t i = 0; i < contacts.size(); ++i) {
     const OrientedPoint& contact = contacts[i];
     size_t first = rows_.size();
-    if (!AddGradientRows(band_, contact, weight / Square(contact.sigma_normal), rows_)) {
+    if (!AddGradientRows(band_, contact, weight / Square(contact.sigma_normal), row_, rows_)) {
       ++contacts_off_band_;
       continue;
     }
     EndGroup(first, false, static_cast<int>(i));
     first = rows_.size();
     if (contact.sigma_position > 0 &&
-        AddValueRow(band_, contact.bundle_position, weight / Square(contact.sigma_position), rows_))
+        AddValueRow(band_, contact.bundle_position, weight / Square(contact.sigma_position), row_, rows_))
       EndGroup(first, false);
   }
 }
@@ -109,7 +109,7 @@ void SurfaceConstraints::AddPoints(const std::vector<SurfacePoint>& points, doub
   if (weight == 0) return;
   for (const SurfacePoint& point : points) {
     const size_t first = rows_.size();
-    if (AddValueRow(band_, point.position, weight / Square(point.sigma), rows_))
+    if (AddValueRow(band_, point.position, weight / Square(point.sigma), row_, rows_))
       EndGroup(first, true);
     else
       ++points_off_band_;
@@ -120,8 +120,8 @@ void SurfaceConstraints::AddOutline(const std::vector<OrientedPoint>& touched, d
   if (weight == 0) return;
   for (const OrientedPoint& place : touched) {
     const size_t first = rows_.size();
-    AddValueRow(band_, place.bundle_position, weight / Square(place.sigma_position), rows_);
-    AddGradientRows(band_, place, weight / Square(place.sigma_normal), rows_);
+    AddValueRow(band_, place.bundle_position, weight / Square(place.sigma_position), row_, rows_);
+    AddGradientRows(band_, place, weight / Square(place.sigma_normal), row_, rows_);
     EndGroup(first, true);
   }
 }
@@ -139,11 +139,11 @@ void SurfaceConstraints::AddTilts(const std::vector<Tilt>& tilts) {
     for (const Tap& tap : mean)
       for (int axis = 0; axis < 3; ++axis) {
         const double c = across[axis] / lever * tap.weight / (2 * band_.voxel_size());
-        rows_.Push(band_.Neighbor(tap.voxel, axis, 1), c);
-        rows_.Push(band_.Neighbor(tap.voxel, axis, 0), -c);
+        row_.Push(band_.Neighbor(tap.voxel, axis, 1), c);
+        row_.Push(band_.Neighbor(tap.voxel, axis, 0), -c);
       }
     const double sigma = tilt.sigma / lever;
-    rows_.Close((tilt.cosine - normal.dot(tilt.direction)) / lever, tilt.share / (sigma * sigma));
+    row_.Close((tilt.cosine - normal.dot(tilt.direction)) / lever, tilt.share / (sigma * sigma), rows_);
     EndGroup(first, true, -1, tilt.share);
   }
 }

@@ -28,7 +28,7 @@ struct OrientedPoint {
 class SurfaceConstraints {
  public:
   // Keeps a reference to the band.
-  explicit SurfaceConstraints(const Band& band) : band_(band) {}
+  explicit SurfaceConstraints(const Band& band) : band_(band), row_(band.size()) {}
 
   // A weight of 0 leaves them out.
   void AddContacts(const std::vector<OrientedPoint>& contacts, double weight);
@@ -62,6 +62,7 @@ class SurfaceConstraints {
 
   const Band& band_;
 
+  RowBuilder row_;
   BandRows rows_;
   std::vector<double> base_weight_;
   std::vector<Group> groups_;

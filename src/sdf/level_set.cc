@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <openvdb/tools/Interpolation.h>
 
+#include <array>
 #include <cmath>
 
 #include "core/check.h"
@@ -54,6 +55,25 @@ double LevelSet::Value(const Eigen::Vector3d& x_in_world) const {
   GLINT_CHECK(impl_ != nullptr);
   const Accessor accessor(impl_->grid->tree());
   return SampleIndex(accessor, impl_->grid->worldToIndex(ToVdb(x_in_world)));
+}
+
+double LevelSet::MeanValue(const Eigen::Vector3d& x_in_world) const {
+  GLINT_CHECK(impl_ != nullptr);
+  const Accessor accessor(impl_->grid->tree());
+  const openvdb::Vec3d x = impl_->grid->worldToIndex(ToVdb(x_in_world));
+  const openvdb::Coord base = openvdb::Coord::floor(x);
+  // 1 2 1 about each of the two voxels that linear interpolation takes.
+  std::array<std::array<double, 4>, 3> weights;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double f = x[axis] - base[axis];
+    weights[axis] = {(1 - f) / 4, (2 - f) / 4, (1 + f) / 4, f / 4};
+  }
+  double sum = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      for (int k = 0; k < 4; ++k)
+        sum += weights[0][i] * weights[1][j] * weights[2][k] * accessor.getValue(base.offsetBy(i - 1, j - 1, k - 1));
+  return sum;
 }
 
 Eigen::Vector3d LevelSet::Gradient(const Eigen::Vector3d& x_in_world) const {

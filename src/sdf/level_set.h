@@ -28,6 +28,9 @@ class LevelSet {
   // of trilinear samples (≈ unit inside the band).
   double Value(const Eigen::Vector3d& x_in_world) const;
   Eigen::Vector3d Gradient(const Eigen::Vector3d& x_in_world) const;
+  // The mean of Value over the next voxels, weighted 1 2 1 along each axis. Linear functions stay; what quadratic ones
+  // shift by does not bend.
+  double MeanValue(const Eigen::Vector3d& x_in_world) const;
 
   LevelSet DeepCopy() const;
   const LevelSetImpl& impl() const { return *impl_; }

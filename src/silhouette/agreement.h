@@ -21,8 +21,8 @@ struct MaskSet {
   int contradictions = 2;
 };
 
-// By how much x is outside of what the masks (but `skip`) leave room for, world units.
-std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Eigen::Vector3d& x, int skip = -1);
+// By how much x is outside of what the masks leave room for, world units.
+std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Eigen::Vector3d& x);
 
 // The same, but for the share of the masks that may be wrong; nothing, too, where fewer than half of them know of x.
 std::optional<double> OutsideByMost(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x,
@@ -34,8 +34,9 @@ struct Reach {
   double radius;
 };
 
-// Sets near, depth and far of the sample by the masks of the other views; returns OutsideBy at `depth`, the least along
-// the ray. Nothing where they say nothing. `slack`: world units by which OutsideBy may exceed its least in [near, far].
+// Sets near, depth and far of the sample by the masks of the other views; returns by how much they have it outside at
+// `depth`, the least along the ray. Nothing where they say nothing. `slack`: world units by which that may be exceeded
+// in [near, far].
 std::optional<double> FindContact(const Scene& scene, const MaskSet& set, int own, const Reach& reach, double slack,
                                   OutlineSample& sample);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/imgproc/detail/gcgraph.hpp>
+#include <utility>
 #include <vector>
 
 #include "core/square.h"
@@ -57,38 +58,61 @@ cv::Mat ColorLabels(const cv::Mat& lab) {
   return labels;
 }
 
-// Pixels marked in `mask`, counted around every pixel.
-cv::Mat CountAround(const cv::Mat& mask, double sigma) {
-  cv::Mat small, wide;
-  mask.convertTo(small, CV_32F, 1.0 / 255);
-  const cv::Size coarse((mask.cols + kShrink - 1) / kShrink, (mask.rows + kShrink - 1) / kShrink);
-  cv::resize(small, small, coarse, 0, 0, cv::INTER_AREA);
-  const double everywhere = cv::mean(small)[0];
-  cv::GaussianBlur(small, small, cv::Size(), sigma / kShrink, sigma / kShrink, cv::BORDER_CONSTANT);
-  small += kGlobal * everywhere;
-  cv::resize(small, wide, mask.size(), 0, 0, cv::INTER_LINEAR);
-  return wide;
+// What was counted in cells of kShrink x kShrink px, from there taken around every pixel and, with less weight, from
+// everywhere.
+class CountsAround {
+ public:
+  CountsAround(cv::Mat cells, double sigma) : cells_(std::move(cells)) {
+    const double everywhere = cv::mean(cells_)[0];
+    cv::GaussianBlur(cells_, cells_, cv::Size(), sigma / kShrink, sigma / kShrink, cv::BORDER_CONSTANT);
+    cells_ += kGlobal * everywhere;
+  }
+
+  double At(int x, int y) const {
+    const double cx = std::clamp((x + 0.5) / kShrink - 0.5, 0.0, cells_.cols - 1.0),
+                 cy = std::clamp((y + 0.5) / kShrink - 0.5, 0.0, cells_.rows - 1.0);
+    const int x0 = static_cast<int>(cx), y0 = static_cast<int>(cy);
+    const int x1 = std::min(x0 + 1, cells_.cols - 1), y1 = std::min(y0 + 1, cells_.rows - 1);
+    const double u = cx - x0, v = cy - y0;
+    const float *low = cells_.ptr<float>(y0), *high = cells_.ptr<float>(y1);
+    return (1 - v) * ((1 - u) * low[x0] + u * low[x1]) + v * ((1 - u) * high[x0] + u * high[x1]);
+  }
+
+ private:
+  cv::Mat cells_;
+};
+
+// Where each colour was seen among the pixels that are known to be `which`, and (last) where any was.
+std::vector<CountsAround> ColorsAround(const cv::Mat& labels, const cv::Mat& known, uint8_t which) {
+  const double sigma = kWindowRel * std::max(labels.cols, labels.rows);
+  std::vector<cv::Mat> cells(kColors + 1);
+  for (cv::Mat& c : cells)
+    c = cv::Mat((labels.rows + kShrink - 1) / kShrink, (labels.cols + kShrink - 1) / kShrink, CV_32F, cv::Scalar(0));
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (known.at<uint8_t>(y, x) == which) {
+        cells[labels.at<uint8_t>(y, x)].at<float>(y / kShrink, x / kShrink) += 1;
+        cells[kColors].at<float>(y / kShrink, x / kShrink) += 1;
+      }
+  std::vector<CountsAround> out;
+  for (cv::Mat& c : cells) out.emplace_back(std::move(c), sigma);
+  return out;
 }
 
 // Log of the odds that a pixel is the object's by its colour, learned from pixels around it that are known.
 cv::Mat ColorEvidence(const cv::Mat& labels, const cv::Mat& known) {
-  const double sigma = kWindowRel * std::max(labels.cols, labels.rows);
-  const cv::Mat object = known == kObject, around = known == kSurroundings;
-  const cv::Mat all_object = CountAround(object, sigma), all_around = CountAround(around, sigma);
+  const std::vector<CountsAround> in = ColorsAround(labels, known, kObject),
+                                  out = ColorsAround(labels, known, kSurroundings);
   cv::Mat evidence(labels.size(), CV_32F, cv::Scalar(0));
   constexpr double kLeast = 0.25 / kColors;  // share of a colour that was not seen
-  for (int k = 0; k < kColors; ++k) {
-    const cv::Mat here = labels == k;
-    const cv::Mat in = CountAround(here & object, sigma), out = CountAround(here & around, sigma);
-    for (int y = 0; y < labels.rows; ++y)
-      for (int x = 0; x < labels.cols; ++x) {
-        if (labels.at<uint8_t>(y, x) != k) continue;
-        const double p = in.at<float>(y, x) / std::max(1e-6f, all_object.at<float>(y, x));
-        const double q = out.at<float>(y, x) / std::max(1e-6f, all_around.at<float>(y, x));
-        evidence.at<float>(y, x) =
-            static_cast<float>(std::clamp(std::log((p + kLeast) / (q + kLeast)), -kMaxEvidence, kMaxEvidence));
-      }
-  }
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x) {
+      const int color = labels.at<uint8_t>(y, x);
+      const double p = in[color].At(x, y) / std::max(1e-4, in[kColors].At(x, y));
+      const double q = out[color].At(x, y) / std::max(1e-4, out[kColors].At(x, y));
+      evidence.at<float>(y, x) =
+          static_cast<float>(std::clamp(std::log((p + kLeast) / (q + kLeast)), -kMaxEvidence, kMaxEvidence));
+    }
   return evidence;
 }
 

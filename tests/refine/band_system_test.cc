@@ -70,6 +70,22 @@ TEST(Band, TrilinearWeightsReproduceLinearFunctions) {
   EXPECT_FALSE(band.Trilinear(Eigen::Vector3d::Zero(), voxels, weights));
 }
 
+TEST(RowBuilder, SaysOneThingOfAVoxel) {
+  BandRows rows;
+  RowBuilder row(5);
+  row.Push(3, 0.5);
+  row.Push(1, 2);
+  row.Push(3, 0.25);
+  row.Close(7, 9, rows);
+  row.Push(1, -1);
+  row.Close(0, 1, rows);
+  EXPECT_EQ(rows.begin, (std::vector<size_t>{0, 2, 3}));
+  EXPECT_EQ(rows.voxel, (std::vector<int32_t>{3, 1, 1}));
+  EXPECT_EQ(rows.coefficient, (std::vector<float>{0.75F, 2, -1}));
+  EXPECT_EQ(rows.target, (std::vector<double>{7, 0}));
+  EXPECT_EQ(rows.weight, (std::vector<double>{9, 1}));
+}
+
 TEST(BandSystem, LinearFunctionsHaveNoSmoothnessEnergy) {
   const Band band(Sphere());
   const BandSystem system(band, Weights(band));

@@ -252,6 +252,24 @@ TEST(MeshToLevelSet, MemoryIsPredicted) {
   EXPECT_THROW(MeshToLevelSet(sphere, 1e-5, {}), InputError);
 }
 
+TEST(LevelSet, MeanValueIsTheMeanOfTheNextVoxels) {
+  const LevelSet field = MeshToLevelSet(testing::SpikySphere(3, 0.3, 2), 0.05, {});
+  const double h = field.voxel_size();
+  for (int n = 0; n < 200; ++n) {
+    // Some on the voxels, some between them.
+    Eigen::Vector3d x(0.9 * std::sin(n), 0.9 * std::cos(1.7 * n), 0.8 * std::sin(2.3 * n + 1));
+    if (n % 2 == 0)
+      for (int axis = 0; axis < 3; ++axis) x[axis] = h * std::round(x[axis] / h);
+    double sum = 0;
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j)
+        for (int k = -1; k <= 1; ++k)
+          sum += (2 - std::abs(i)) * (2 - std::abs(j)) * (2 - std::abs(k)) / 64.0 *
+                 field.Value(x + h * Eigen::Vector3d(i, j, k));
+    EXPECT_NEAR(field.MeanValue(x), sum, 1e-6 * h) << x.transpose();
+  }
+}
+
 TEST(MeshToLevelSet, OneTriangle) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
