@@ -58,58 +58,90 @@ cv::Mat ColorLabels(const cv::Mat& lab) {
   return labels;
 }
 
-// What was counted in cells of kShrink x kShrink px, from there taken around every pixel and, with less weight, from
-// everywhere.
-class CountsAround {
+// One axis of pixels, cut into even cells of at most kShrink.
+class Cells {
  public:
-  CountsAround(cv::Mat cells, double sigma) : cells_(std::move(cells)) {
-    const double everywhere = cv::mean(cells_)[0];
-    cv::GaussianBlur(cells_, cells_, cv::Size(), sigma / kShrink, sigma / kShrink, cv::BORDER_CONSTANT);
-    cells_ += kGlobal * everywhere;
+  explicit Cells(int pixels) : count_((pixels + kShrink - 1) / kShrink), width_(static_cast<double>(pixels) / count_) {
+    for (int p = 0; p < pixels; ++p) {
+      const int cell = std::min(static_cast<int>(p / width_), count_ - 1);
+      const double within = std::min(1.0, (cell + 1) * width_ - p);
+      shares_.push_back({cell, std::min(cell + 1, count_ - 1), static_cast<float>(within)});
+      const double at = std::clamp((p + 0.5) / width_ - 0.5, 0.0, count_ - 1.0);
+      const int low = static_cast<int>(at);
+      around_.push_back({low, std::min(low + 1, count_ - 1), static_cast<float>(low + 1 - at)});
+    }
   }
 
-  double At(int x, int y) const {
-    const double cx = std::clamp((x + 0.5) / kShrink - 0.5, 0.0, cells_.cols - 1.0),
-                 cy = std::clamp((y + 0.5) / kShrink - 0.5, 0.0, cells_.rows - 1.0);
-    const int x0 = static_cast<int>(cx), y0 = static_cast<int>(cy);
-    const int x1 = std::min(x0 + 1, cells_.cols - 1), y1 = std::min(y0 + 1, cells_.rows - 1);
-    const double u = cx - x0, v = cy - y0;
-    const float *low = cells_.ptr<float>(y0), *high = cells_.ptr<float>(y1);
-    return (1 - v) * ((1 - u) * low[x0] + u * low[x1]) + v * ((1 - u) * high[x0] + u * high[x1]);
+  struct Pair {
+    int first, second;
+    float weight;  // of the first; the rest is the second's
+  };
+  int count() const { return count_; }
+  double width() const { return width_; }
+  const Pair& SharesOf(int pixel) const { return shares_[pixel]; }  // the cells that it lies in
+  const Pair& Around(int pixel) const { return around_[pixel]; }    // those whose centres it lies between
+
+ private:
+  int count_;
+  double width_;
+  std::vector<Pair> shares_, around_;
+};
+
+// Where each colour was seen, and where any: as shares of cells, from there taken around every pixel and, with less
+// weight, from everywhere.
+class ColorsAround {
+ public:
+  // Among the pixels that are known to be `which`.
+  ColorsAround(const cv::Mat& labels, const cv::Mat& known, uint8_t which)
+      : columns_(labels.cols), rows_(labels.rows), cells_(kColors + 1) {
+    for (cv::Mat& c : cells_) c = cv::Mat(rows_.count(), columns_.count(), CV_32F, cv::Scalar(0));
+    for (int y = 0; y < labels.rows; ++y)
+      for (int x = 0; x < labels.cols; ++x) {
+        if (known.at<uint8_t>(y, x) != which) continue;
+        Count(cells_[labels.at<uint8_t>(y, x)], x, y);
+        Count(cells_[kColors], x, y);
+      }
+    const double sigma = kWindowRel * std::max(labels.cols, labels.rows) / kShrink;
+    for (cv::Mat& c : cells_) {
+      c *= 1 / (columns_.width() * rows_.width());
+      const double everywhere = cv::mean(c)[0];
+      cv::GaussianBlur(c, c, cv::Size(), sigma, sigma, cv::BORDER_CONSTANT);
+      c += kGlobal * everywhere;
+    }
+  }
+
+  // Of what is seen around a pixel, the share that has this colour.
+  double Share(int color, int x, int y) const {
+    return At(cells_[color], x, y) / std::max(1e-6F, At(cells_[kColors], x, y));
   }
 
  private:
-  cv::Mat cells_;
-};
+  void Count(cv::Mat& cells, int x, int y) const {
+    const Cells::Pair &u = columns_.SharesOf(x), &v = rows_.SharesOf(y);
+    float *low = cells.ptr<float>(v.first), *high = cells.ptr<float>(v.second);
+    low[u.first] += u.weight * v.weight, low[u.second] += (1 - u.weight) * v.weight;
+    high[u.first] += u.weight * (1 - v.weight), high[u.second] += (1 - u.weight) * (1 - v.weight);
+  }
+  float At(const cv::Mat& cells, int x, int y) const {
+    const Cells::Pair &u = columns_.Around(x), &v = rows_.Around(y);
+    const float *low = cells.ptr<float>(v.first), *high = cells.ptr<float>(v.second);
+    return v.weight * (u.weight * low[u.first] + (1 - u.weight) * low[u.second]) +
+           (1 - v.weight) * (u.weight * high[u.first] + (1 - u.weight) * high[u.second]);
+  }
 
-// Where each colour was seen among the pixels that are known to be `which`, and (last) where any was.
-std::vector<CountsAround> ColorsAround(const cv::Mat& labels, const cv::Mat& known, uint8_t which) {
-  const double sigma = kWindowRel * std::max(labels.cols, labels.rows);
-  std::vector<cv::Mat> cells(kColors + 1);
-  for (cv::Mat& c : cells)
-    c = cv::Mat((labels.rows + kShrink - 1) / kShrink, (labels.cols + kShrink - 1) / kShrink, CV_32F, cv::Scalar(0));
-  for (int y = 0; y < labels.rows; ++y)
-    for (int x = 0; x < labels.cols; ++x)
-      if (known.at<uint8_t>(y, x) == which) {
-        cells[labels.at<uint8_t>(y, x)].at<float>(y / kShrink, x / kShrink) += 1;
-        cells[kColors].at<float>(y / kShrink, x / kShrink) += 1;
-      }
-  std::vector<CountsAround> out;
-  for (cv::Mat& c : cells) out.emplace_back(std::move(c), sigma);
-  return out;
-}
+  Cells columns_, rows_;
+  std::vector<cv::Mat> cells_;
+};
 
 // Log of the odds that a pixel is the object's by its colour, learned from pixels around it that are known.
 cv::Mat ColorEvidence(const cv::Mat& labels, const cv::Mat& known) {
-  const std::vector<CountsAround> in = ColorsAround(labels, known, kObject),
-                                  out = ColorsAround(labels, known, kSurroundings);
+  const ColorsAround object(labels, known, kObject), around(labels, known, kSurroundings);
   cv::Mat evidence(labels.size(), CV_32F, cv::Scalar(0));
   constexpr double kLeast = 0.25 / kColors;  // share of a colour that was not seen
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
       const int color = labels.at<uint8_t>(y, x);
-      const double p = in[color].At(x, y) / std::max(1e-4, in[kColors].At(x, y));
-      const double q = out[color].At(x, y) / std::max(1e-4, out[kColors].At(x, y));
+      const double p = object.Share(color, x, y), q = around.Share(color, x, y);
       evidence.at<float>(y, x) =
           static_cast<float>(std::clamp(std::log((p + kLeast) / (q + kLeast)), -kMaxEvidence, kMaxEvidence));
     }
