@@ -94,10 +94,10 @@ void MeasureFlow(int voxels) {
     contacts.push_back(contact);
   }
   for (int run = 0; run < kRuns; ++run) {
-    ours.push_back(Seconds([&] { FlowStep({ball, ball, false, 1, {}, {}, {}}, options, nullptr); }) / kSteps);
+    ours.push_back(Seconds([&] { FlowStep({ball, ball, Bend::kFlat, 1, {}, {}, {}}, options, nullptr); }) / kSteps);
     with_contacts.push_back(
         Seconds([&] {
-          FlowStep({ball, ball, false, 1, contacts, {}, {}}, FlowOptions{.max_steps = kSteps}, nullptr);
+          FlowStep({ball, ball, Bend::kFlat, 1, contacts, {}, {}}, FlowOptions{.max_steps = kSteps}, nullptr);
         }) /
         kSteps);
     const openvdb::FloatGrid::Ptr grid = ball.impl().grid->deepCopy();

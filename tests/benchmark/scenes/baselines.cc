@@ -42,7 +42,7 @@ std::vector<TriangleMesh> CurvatureFlowed(const TriangleMesh& mesh, double voxel
     options.max_steps = steps - done;
     done = steps;
     const LevelSet start = surface;
-    surface = FlowStep({start, start, false, 1, {}, {}, {}}, options, nullptr);
+    surface = FlowStep({start, start, Bend::kFlat, 1, {}, {}, {}}, options, nullptr);
     const TriangleMesh extracted = ExtractMesh(surface);
     if (extracted.faces.empty()) break;
     flowed.push_back(frame.ToWorld(extracted));
