@@ -16,6 +16,7 @@
 #include "seed/outline_rim.h"
 #include "seed/rim_points.h"
 #include "seed/shape.h"
+#include "seed/spanned_holes.h"
 #include "seed/subdivide.h"
 #include "stereo/hollows.h"
 
@@ -156,6 +157,14 @@ TriangleMesh WithRim(const Scene& scene, const Silhouettes& silhouettes, const T
   return GenusOf(with) > GenusOf(smooth) ? smooth : SmoothChangedParts(scene, silhouettes.outline(), smooth, with, 0);
 }
 
+// Holes that it spans, through which photographs look.
+TriangleMesh WithHoles(const Scene& scene, const Silhouettes& silhouettes, const TriangleMesh& smooth, SeedSummary& s) {
+  const double diagonal = Diagonal(smooth);
+  const TriangleMesh with = WithSpannedHoles(silhouettes, smooth, kVoxelRel * diagonal, kRoundingRel * diagonal);
+  s.num_holes = GenusOf(with) - GenusOf(smooth);
+  return s.num_holes == 0 ? smooth : SmoothChangedParts(scene, silhouettes.outline(), smooth, with, 0);
+}
+
 // Hollows that it spans, which nothing but their colours shows, are taken out of it.
 TriangleMesh WithoutHollows(const Scene& scene, const SparseSurface& sparse, const TriangleMesh& smooth,
                             const std::vector<OutlineSample>& outline, const ImageSource& images, SeedSummary& s,
@@ -206,6 +215,7 @@ std::string SeedSummary::BriefReport() const {
         ", {:.0f} % fit the surface of the points alone{}", 100 * outline_fit_before,
         outlines_used ? fmt::format(", {:.0f} % the seed, with {} points on the rim", 100 * outline_fit, num_rim_points)
                       : ", which is kept");
+  if (num_holes > 0) text += fmt::format("; {} hole(s) opened that the photographs look through", num_holes);
   if (hollows_opened)
     text += fmt::format("; {} hollow(s) opened by the colours of what is in them", hollows.num_hollows);
   for (const std::string& warning : warnings) text += "; " + warning;
@@ -254,6 +264,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   out.mesh = shape.sparse.mesh;
   const TriangleMesh faired = Subdivided(shape);
   out.smooth = s.outlines_used ? WithRim(scene, silhouettes, faired) : faired;
+  out.smooth = WithHoles(scene, silhouettes, out.smooth, s);
   if (images && options.open_hollows)
     out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, silhouettes.outline(), *images, s, progress);
   if (out.smooth.vertices.size() != faired.vertices.size()) MarkFine(faired, out.smooth);

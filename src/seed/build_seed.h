@@ -68,6 +68,7 @@ struct SeedSummary {
   double outline_fit_before = 0;  // share of the outlines that the surface of the points alone agrees with
   double outline_fit = 0;         // and the one with the rim's points
   size_t num_rim_points = 0;
+  long num_holes = 0;  // through the object, that only the photographs show
   HollowSummary hollows;
   bool hollows_opened = false;
   std::vector<std::string> warnings;

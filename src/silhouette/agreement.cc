@@ -80,6 +80,19 @@ std::optional<double> OutsideByMost(const Scene& scene, const std::vector<ViewMa
   return distances[wrong];
 }
 
+std::optional<double> SeenThroughBy(const Scene& scene, const MaskSet& set, size_t views, const Eigen::Vector3d& x) {
+  std::vector<double> depths;
+  for (const ViewMask& mask : set.masks) {
+    if (mask.hole.empty()) continue;
+    if (const auto px = scene.views[mask.view].Project(x))
+      depths.push_back(-mask.HoleDistanceAt(*px) * (x - mask.eye).norm() / mask.focal_px);
+  }
+  if (depths.size() < views || views == 0) return std::nullopt;
+  const auto last = depths.begin() + static_cast<ptrdiff_t>(views - 1);
+  std::nth_element(depths.begin(), last, depths.end(), std::greater<>());
+  return *last;
+}
+
 std::optional<double> FindContact(const Scene& scene, const MaskSet& set, int own, const Reach& reach, double slack,
                                   OutlineSample& sample) {
   const Eigen::Vector3d& eye = set.masks[own].eye;

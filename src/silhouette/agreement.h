@@ -28,6 +28,10 @@ std::optional<double> OutsideBy(const Scene& scene, const MaskSet& set, const Ei
 std::optional<double> OutsideByMost(const Scene& scene, const std::vector<ViewMask>& masks, const Eigen::Vector3d& x,
                                     double wrong_share);
 
+// How deep x is in the holes of at least so many masks' outlines, world units; negative: not in so many. Nothing where
+// fewer have any.
+std::optional<double> SeenThroughBy(const Scene& scene, const MaskSet& set, size_t views, const Eigen::Vector3d& x);
+
 // A ball that holds the object with room to spare.
 struct Reach {
   Eigen::Vector3d center;

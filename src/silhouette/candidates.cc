@@ -18,6 +18,9 @@ constexpr double kReachRel = 0.15;          // of the diagonal: how far outside 
 constexpr double kReachFromHullRel = 0.05;  // outside of what other views leave room for
 constexpr double kClippedPx = 2;
 constexpr double kCoreRel = 0.05;  // and inside of it from where on it is for sure
+constexpr double kNearRel = 0.02;  // around its points, where a hole that the rough mesh spans cannot be
+constexpr int kFewPoints = 12;     // in a view: tell nothing of where the object is not
+constexpr double kHoleRel = 0.04;  // width of the smallest hole: what is smaller is painted
 constexpr double kStep = 2;        // px between samples
 
 double Overlap(const cv::Mat& a, const cv::Mat& b, double a_elsewhere) {
@@ -25,9 +28,11 @@ double Overlap(const cv::Mat& a, const cv::Mat& b, double a_elsewhere) {
   return both / std::max(1.0, any + a_elsewhere);
 }
 
-void Finish(const Work& work, size_t view, const Raster& raster, const cv::Mat& mask, Candidate& out) {
+void Finish(const Work& work, size_t view, const Raster& raster, const cv::Mat& mask, const cv::Mat& holes,
+            Candidate& out) {
   const Eigen::Vector3d eye = work.scene.views[view].Center();
   out.mask = {view, raster, SignedDistance(mask), eye, work.RasterFocal(view, raster)};
+  if (cv::countNonZero(holes) > 0) out.mask.hole = SignedDistance(holes);
   for (const ContourPoint& p : Contour(out.mask.distance, kStep))
     if (!raster.NearImageBorder(p.at, work.scene.views[view].camera, 3)) out.contour.push_back(p);
 }
@@ -44,6 +49,34 @@ cv::Mat WithoutIslands(const cv::Mat& mask, const cv::Mat& core) {
     for (int x = 0; x < mask.cols; ++x)
       if (!keep[labels.at<int>(y, x)]) out.at<uint8_t>(y, x) = 0;
   return out;
+}
+
+// Where the object's points are near, CV_8U; everywhere, if too few are seen.
+cv::Mat NearPoints(const cv::Mat& hints, double radius) {
+  cv::Mat near, away;
+  const cv::Mat elsewhere = hints <= 0;
+  cv::Mat labels;
+  if (cv::connectedComponents(~elsewhere, labels, 8) <= kFewPoints)
+    return cv::Mat(hints.size(), CV_8U, cv::Scalar(255));
+  cv::distanceTransform(elsewhere, away, cv::DIST_L2, cv::DIST_MASK_5);
+  return away < radius;
+}
+
+// Of what is not in the mask, the pieces that lie within the core and are not small.
+cv::Mat HolesOf(const cv::Mat& mask, const cv::Mat& core, double least_px) {
+  cv::Mat labels, stats, centroids, within, holes(mask.size(), CV_8U, cv::Scalar(0));
+  cv::erode(core, within, cv::Mat());
+  const int count = cv::connectedComponentsWithStats(~mask, labels, stats, centroids, 4);
+  std::vector<uint8_t> is_hole(count, 1);
+  is_hole[0] = 0;
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (!within.at<uint8_t>(y, x)) is_hole[labels.at<int>(y, x)] = 0;
+  for (int k = 1; k < count; ++k) is_hole[k] &= stats.at<int>(k, cv::CC_STAT_AREA) >= least_px * least_px;
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (is_hole[labels.at<int>(y, x)]) holes.at<uint8_t>(y, x) = 255;
+  return holes;
 }
 
 // Where the object goes up to where it was looked for, it may go on: places outside whose nearest bit of outline is
@@ -90,9 +123,10 @@ std::optional<Candidate> FromMask(const Work& work, size_t view) {
   Candidate out;
   const double elsewhere =
       (cv::countNonZero(mask) - cv::countNonZero(mask(raster->window))) * raster->scale * raster->scale;
-  out.overlap = Overlap(small, ProjectedDistance(work.scene.views[view], work.rough.mesh, *raster) < 0, elsewhere);
+  const cv::Mat rough = ProjectedDistance(work.scene.views[view], work.rough.mesh, *raster);
+  out.overlap = Overlap(small, rough < 0, elsewhere);
   out.sigma_px = FineEdgeSigma(*raster);
-  Finish(work, view, *raster, small, out);
+  Finish(work, view, *raster, small, HolesOf(small, rough < 0, kHoleRel * work.DiagonalPx(view, *raster)), out);
   cv::cvtColor(mask, mask, cv::COLOR_GRAY2BGR);
   out.contour = OnFineEdges(mask, *raster, false, out.contour);
   return out;
@@ -116,13 +150,15 @@ std::optional<Candidate> FromPhotograph(const Work& work, size_t view, const Tri
     const cv::Mat room = cv::max(ProjectedDistance(work.scene.views[view], *hull, raster), 0.F);
     expected = cv::min(rough, room);
   }
-  const cv::Mat mask =
-      WithoutIslands(Segment({small, expected, Hints(work, view, raster), reach, core}), expected < -core);
+  const cv::Mat hints = Hints(work, view, raster), inside = expected < -core;
+  const Segmentation cut = Segment({small, expected, hints, reach, core, NearPoints(hints, kNearRel * size)});
+  const cv::Mat holes = HolesOf(~cut.through, inside, kHoleRel * size);
+  const cv::Mat mask = WithoutIslands(cut.object & ~holes, inside);
   Candidate out;
   out.overlap = Overlap(mask, rough < 0, 0);
   out.sigma_px = FineEdgeSigma(raster);
   out.found = true;
-  Finish(work, view, raster, mask, out);
+  Finish(work, view, raster, mask, holes, out);
   // The mask keeps to the raster's edges, inside of the object's: what it leaves room for is then rather too little.
   out.contour = OnFineEdges(image, raster, true, OnEdges(small, out.contour));
   ForgetBeyond(mask, expected > reach - kClippedPx, out.mask.distance);

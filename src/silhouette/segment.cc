@@ -25,6 +25,7 @@ constexpr double kEdge = 9;             // cost of a border without contrast
 constexpr double kMinEdge = 0.4;        // and with any contrast
 constexpr double kSure = 1e6;
 constexpr int kRounds = 3;
+constexpr int kCoreRounds = 2;
 constexpr int kShrink = 8;  // of the raster, for windows
 
 enum : uint8_t { kUnknown, kObject, kSurroundings };
@@ -205,9 +206,36 @@ cv::Mat Odds(const SegmentInput& in, const cv::Mat& colors) {
   return odds;
 }
 
+// The same where all but the core is known and in the core only what is near.
+cv::Mat CoreOdds(const SegmentInput& in, const cv::Mat& object, const cv::Mat& colors) {
+  cv::Mat odds = colors.clone();
+  for (int y = 0; y < odds.rows; ++y)
+    for (int x = 0; x < odds.cols; ++x) {
+      const bool core = in.prior.at<float>(y, x) < -in.core;
+      float& o = odds.at<float>(y, x);
+      if (!core) o = static_cast<float>(object.at<uint8_t>(y, x) ? kSure : -kSure);
+      if (core && in.near.at<uint8_t>(y, x)) o = static_cast<float>(kSure);
+    }
+  return odds;
+}
+
+// What of the core is not the object after all: the colours of the object are learned near and around it alone.
+cv::Mat Through(const SegmentInput& in, const cv::Mat& object, const cv::Mat& quiet, const cv::Mat& labels) {
+  const cv::Mat core = in.prior < -in.core, free = core & ~in.near;
+  cv::Mat known(labels.size(), CV_8U, cv::Scalar(kSurroundings)), mask;
+  known.setTo(kObject, object);
+  known.setTo(kUnknown, free);
+  if (cv::countNonZero(free) == 0) return free;
+  for (int round = 0; round < kCoreRounds; ++round) {
+    if (round > 0) known.setTo(kObject, mask), known.setTo(kSurroundings, ~mask);
+    mask = Cut(quiet, CoreOdds(in, object, ColorEvidence(labels, known)));
+  }
+  return core & ~mask;
+}
+
 }  // namespace
 
-cv::Mat Segment(const SegmentInput& input) {
+Segmentation Segment(const SegmentInput& input) {
   const cv::Mat lab = ToLab(input.image);
   cv::Mat quiet;
   cv::GaussianBlur(lab, quiet, cv::Size(), 0.8);
@@ -224,7 +252,7 @@ cv::Mat Segment(const SegmentInput& input) {
       }
     mask = Cut(quiet, Odds(input, ColorEvidence(labels, known)));
   }
-  return mask;
+  return {mask, Through(input, mask, quiet, labels)};
 }
 
 }  // namespace glint::internal

@@ -11,9 +11,15 @@ struct SegmentInput {
   cv::Mat hints;     // CV_8S: 1 the object, -1 not, 0 unknown
   double reach = 0;  // px outside of the expected outline in which the object may be
   double core = 0;   // px inside of it from where on it is the object for sure
+  cv::Mat near;      // CV_8U: non-zero where that is so even if what is expected spans holes
 };
 
-// CV_8U, 255 on the object. Deterministic.
-cv::Mat Segment(const SegmentInput& input);
+struct Segmentation {
+  cv::Mat object;   // CV_8U, 255 on it; with all of the core
+  cv::Mat through;  // CV_8U, 255 where the core looks like the surroundings instead
+};
+
+// Deterministic.
+Segmentation Segment(const SegmentInput& input);
 
 }  // namespace glint::internal

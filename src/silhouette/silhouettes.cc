@@ -245,6 +245,12 @@ std::optional<double> Silhouettes::OutsideBy(const Eigen::Vector3d& x) const {
   return internal::OutsideBy(impl_->views, impl_->masks, x);
 }
 
+std::optional<double> Silhouettes::SeenThroughBy(const Eigen::Vector3d& x, size_t views) const {
+  return internal::SeenThroughBy(impl_->views, impl_->masks, views, x);
+}
+
+size_t Silhouettes::num_views() const { return impl_->masks.masks.size(); }
+
 Silhouettes FindSilhouettes(const Scene& scene, const ImageSource& images, const RoughObject& rough,
                             const SilhouetteOptions& options, SilhouetteSummary* summary, Progress& progress) {
   GLINT_CHECK_EQ(rough.point_side.size(), scene.points.size());

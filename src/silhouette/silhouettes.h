@@ -59,6 +59,11 @@ class Silhouettes {
   // outlines but at most a few. Nothing where too few views see it.
   std::optional<double> OutsideBy(const Eigen::Vector3d& x) const;
 
+  // How deep x is in holes of the outlines of at least so many views, world units; negative: not in so many. Nothing
+  // where fewer have any.
+  std::optional<double> SeenThroughBy(const Eigen::Vector3d& x, size_t views) const;
+  size_t num_views() const;  // trusted ones
+
  private:
   friend Silhouettes FindSilhouettes(const Scene&, const ImageSource&, const RoughObject&, const SilhouetteOptions&,
                                      SilhouetteSummary*, Progress&);

@@ -29,6 +29,13 @@ float Bilinear(const cv::Mat& image, const Eigen::Vector2d& at) {
                             v * ((1 - u) * image.at<float>(y1, x0) + u * image.at<float>(y1, x1)));
 }
 
+// A distance in px; outside of the raster it grows with the way from it.
+double AtOrBeyond(const cv::Mat& distance, const Eigen::Vector2d& at) {
+  const Eigen::Vector2d inside =
+      at.cwiseMax(Eigen::Vector2d::Constant(0.5)).cwiseMin(Eigen::Vector2d(distance.cols - 0.5, distance.rows - 0.5));
+  return Bilinear(distance, inside) + (at - inside).norm();
+}
+
 Eigen::Vector2d Gradient(const cv::Mat& image, const Eigen::Vector2d& at) {
   const Eigen::Vector2d dx(1, 0), dy(0, 1);
   return {(Bilinear(image, at + dx) - Bilinear(image, at - dx)) / 2,
@@ -103,13 +110,11 @@ cv::Mat ProjectedDistance(const View& view, const TriangleMesh& mesh, const Rast
 
 std::optional<double> ViewMask::DistanceAt(const View& in, const Eigen::Vector2d& px) const {
   if (!in.Contains(px)) return std::nullopt;
-  const Eigen::Vector2d at = raster.FromImage(px);
-  const Eigen::Vector2d inside = at.cwiseMax(Eigen::Vector2d::Constant(0.5))
-                                     .cwiseMin(Eigen::Vector2d(raster.size.width - 0.5, raster.size.height - 0.5));
-  const double there = Bilinear(distance, inside);
-  if (std::isnan(there)) return std::nullopt;
-  return there + (at - inside).norm();
+  const double there = AtOrBeyond(distance, raster.FromImage(px));
+  return std::isnan(there) ? std::nullopt : std::optional(there);
 }
+
+double ViewMask::HoleDistanceAt(const Eigen::Vector2d& px) const { return AtOrBeyond(hole, raster.FromImage(px)); }
 
 std::vector<ContourPoint> Contour(const cv::Mat& distance, double step) {
   cv::Mat smooth;

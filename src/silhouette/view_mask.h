@@ -46,10 +46,13 @@ struct ViewMask {
   cv::Mat distance;  // NaN: not known
   Eigen::Vector3d eye;
   double focal_px = 0;  // in the raster's px
+  cv::Mat hole = {};    // as `distance`, from the border of holes in the outline, negative in them; empty: none
 
   // Distance in raster px at image px; outside of the raster grows with the way from it. Nothing outside of the image
   // and where it is not known.
   std::optional<double> DistanceAt(const View& in, const Eigen::Vector2d& px) const;
+  // From the border of the holes, of which there are some; negative in them.
+  double HoleDistanceAt(const Eigen::Vector2d& px) const;
 };
 
 // A place on the outline with its direction out of the object, raster px.

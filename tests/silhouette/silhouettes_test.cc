@@ -13,6 +13,7 @@
 #include "silhouette/hull.h"
 #include "silhouette/support.h"
 #include "tests/seed/simulated_scene.h"
+#include "tests/silhouette/ring_scene.h"
 
 namespace glint {
 namespace {
@@ -231,6 +232,46 @@ TEST_F(Outlines, AreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(results[0][i].px, results[1][i].px);
     EXPECT_EQ(results[0][i].depth, results[1][i].depth);
   }
+}
+
+// Grey with a bluish ring.
+std::vector<cv::Mat> PhotographsOf(const RingScene& ring) {
+  std::vector<cv::Mat> photographs;
+  for (const cv::Mat& mask : ring.masks) photographs.push_back(Photograph(mask));
+  return photographs;
+}
+
+TEST(Holes, AreSeenThroughThoughTheRoughMeshSpansThem) {
+  const RingScene ring;
+  const Silhouettes s =
+      FindSilhouettes(ring.scene, MemoryImages(PhotographsOf(ring)),
+                      {RingScene::Disc(), std::vector<int8_t>(ring.scene.points.size(), 1)}, {.max_views = 12});
+  ASSERT_GT(s.num_views(), 10u);
+  ASSERT_TRUE(s.SeenThroughBy({0, 0, 0}, 3));
+  // Aslant the ring covers some of it.
+  EXPECT_GT(*s.SeenThroughBy({0, 0, 0}, 3), 0.3);
+  EXPECT_LT(*s.SeenThroughBy({0, 0, 0}, 3), RingScene::kMajor - RingScene::kMinor);
+  for (double turn = 0; turn < 6; turn += 1)
+    EXPECT_LT(*s.SeenThroughBy({std::cos(turn), std::sin(turn), 0}, 3), 0) << turn;
+  EXPECT_FALSE(s.SeenThroughBy({0, 0, 0}, s.num_views() + 1));
+}
+
+// What is painted like the background, with points around it, is not; nor is anything where too few points tell.
+TEST(Holes, AreNotWhereThePointsAre) {
+  RingScene ring;
+  std::vector<cv::Mat> photographs = PhotographsOf(ring);
+  const Silhouettes no_points =
+      FindSilhouettes(ring.scene, MemoryImages(photographs),
+                      {RingScene::Disc(), std::vector<int8_t>(ring.scene.points.size(), 0)}, {.max_views = 12});
+  EXPECT_FALSE(no_points.SeenThroughBy({0, 0, 0}, 3));
+  for (int i = 0; i < 600; ++i) {
+    const double across = (RingScene::kMajor - RingScene::kMinor) * std::sqrt((i + 0.5) / 600), turn = 2.4 * i;
+    AddPoint(ring.scene, {across * std::cos(turn), across * std::sin(turn), 0}, [](const auto&) { return true; });
+  }
+  const Silhouettes painted =
+      FindSilhouettes(ring.scene, MemoryImages(photographs),
+                      {RingScene::Disc(), std::vector<int8_t>(ring.scene.points.size(), 1)}, {.max_views = 12});
+  EXPECT_FALSE(painted.SeenThroughBy({0, 0, 0}, 3));
 }
 
 TEST(OutlineNeighbors, SayHowFarOffASampleIs) {
