@@ -116,7 +116,11 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   std::vector<Eigen::Vector3d> points;
   for (size_t i = 0; i < choice.role.size(); ++i)
     if (choice.role[i] == PointRole::kObject) points.push_back(scene.points[i].position);
-  RimEvidence rim = RimFromOutline(scene, outline, points, Diagonal(made.shape.smooth), found.source == "masks");
+  RimEvidence rim = RimFromOutline(scene, outline, points,
+                                   {.diagonal = Diagonal(made.shape.smooth),
+                                    .carve = found.source == "masks",
+                                    .few_sides = silhouettes.from_few_sides()});
+  AddHullPoints(silhouettes.hull(), made.shape.smooth, points, ground, rim);
   rim.of_a_wall = points_alone.shape.sparse.is_wall;
   Made with{{}, points_alone.reliability, points_alone.choice};
   with.shape = MakeShape(scene, with.reliability, with.choice, rim, options.surface, options.smooth, progress);

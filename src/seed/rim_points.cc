@@ -6,14 +6,20 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "core/square.h"
+#include "geometry/edge_topology.h"
 #include "geometry/point_index.h"
+#include "geometry/pseudo_normals.h"
 #include "geometry/ray_caster.h"
+#include "sdf/signed_distance.h"
 #include "silhouette/support.h"
 
 namespace glint {
 namespace {
 
 constexpr double kMaxIntervalRel = 0.10;  // of the diagonal: of a sample that becomes a point
+constexpr double kWideIntervalRel = 0.3;  // where there are few sides
+constexpr double kSagitta = 0.3;          // of an interval over it in diagonals: how far off its middle may be
 constexpr double kGapRel = 0.03;          // from the sparse points
 constexpr double kSpacingRel = 0.02;      // of rim points
 constexpr double kReachRel = 0.025;       // of a rim point's neighbours
@@ -22,6 +28,10 @@ constexpr double kMinSigmaRel = 0.002;
 constexpr double kDepthRel = 0.012;  // of matter behind a rim point
 constexpr double kClearRel = 0.005;  // how far outside of the outline a ray is surely free
 constexpr double kFitRel = 0.006;
+// Of the diagonal: a hull is good to a few hundredths of it.
+constexpr double kHullOutsideRel = 0.03, kHullSigmaRel = 0.03;
+constexpr double kHullGapRel = 0.08, kHullSpacingRel = 0.06;
+constexpr double kHullGroundRel = 0.02;  // below, it may be a shadow's
 constexpr size_t kGrain = 256;
 
 Eigen::Vector3d Contact(const Scene& scene, const OutlineSample& s) {
@@ -70,10 +80,12 @@ std::vector<OutlineSample> WellKnown(const std::vector<OutlineSample>& outline, 
 }  // namespace
 
 RimEvidence RimFromOutline(const Scene& scene, const std::vector<OutlineSample>& outline,
-                           const std::vector<Eigen::Vector3d>& points, double diagonal, bool carve) {
+                           const std::vector<Eigen::Vector3d>& points, const RimOptions& options) {
+  const double diagonal = options.diagonal;
   RimEvidence out;
   out.depth = kDepthRel * diagonal;
-  const std::vector<OutlineSample> samples = WellKnown(outline, kMaxIntervalRel * diagonal);
+  const std::vector<OutlineSample> samples =
+      WellKnown(outline, (options.few_sides ? kWideIntervalRel : kMaxIntervalRel) * diagonal);
   const OutlineNeighbors neighbors(scene, samples);
   const PointIndex sparse(points);
   Thinner thinner(kSpacingRel * diagonal);
@@ -81,19 +93,38 @@ RimEvidence RimFromOutline(const Scene& scene, const std::vector<OutlineSample>&
     const Eigen::Vector3d& place = neighbors.Place(i);
     if (!points.empty() && (points[sparse.Nearest(place, 1)[0]] - place).norm() < kGapRel * diagonal) continue;
     const Support support = neighbors.Of(i, kReachRel * diagonal);
-    if (support.samples < kMinSupport || support.views < 2) continue;
+    if (!options.few_sides && (support.samples < kMinSupport || support.views < 2)) continue;
     const Eigen::Vector3d x = place + support.offset * samples[i].normal;
     if (!thinner.Add(x)) continue;
-    const double sigma = support.spread / std::sqrt(static_cast<double>(support.samples));
+    double sigma = support.spread / std::sqrt(static_cast<double>(support.samples));
+    if (options.few_sides) sigma = std::max(sigma, kSagitta * Square(samples[i].far - samples[i].near) / diagonal);
     out.points.push_back({x, support.normal, std::max(sigma, kMinSigmaRel * diagonal)});
   }
   for (const OutlineSample& s : outline) {
-    if (!carve) break;
+    if (!options.carve) break;
     const Eigen::Vector3d eye = scene.views[s.view].Center();
     const Eigen::Vector3d beside = Contact(scene, s) + std::max(3 * s.sigma, kClearRel * diagonal) * s.normal;
     out.free_lines.push_back({beside + diagonal * (beside - eye).normalized(), eye});
   }
   return out;
+}
+
+void AddHullPoints(const TriangleMesh& hull, const TriangleMesh& shape, const std::vector<Eigen::Vector3d>& points,
+                   const std::optional<Eigen::Hyperplane<double, 3>>& ground, RimEvidence& rim) {
+  if (hull.empty() || points.empty()) return;
+  const double diagonal = Diagonal(shape);
+  const std::vector<double> outside = SignedDistance(shape, hull.vertices);
+  const std::vector<Eigen::Vector3d> normals = ComputePseudoNormals(hull, BuildEdgeTopology(hull)).vertex;
+  const PointIndex sparse(points);
+  Thinner thinner(kHullSpacingRel * diagonal);
+  for (const RimPoint& p : rim.points) thinner.Add(p.position);
+  for (size_t i = 0; i < hull.vertices.size(); ++i) {
+    const Eigen::Vector3d& x = hull.vertices[i];
+    if (outside[i] < kHullOutsideRel * diagonal) continue;
+    if (ground && ground->signedDistance(x) < kHullGroundRel * diagonal) continue;
+    if ((points[sparse.Nearest(x, 1)[0]] - x).norm() < kHullGapRel * diagonal || !thinner.Add(x)) continue;
+    rim.points.push_back({x, normals[i].normalized(), kHullSigmaRel * diagonal});
+  }
 }
 
 double OutlineFit(const Scene& scene, const std::vector<OutlineSample>& outline, const TriangleMesh& mesh) {

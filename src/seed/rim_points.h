@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "colmap/scene.h"
@@ -27,11 +29,21 @@ struct RimEvidence {
   bool of_a_wall = false;                 // the points alone made sense as a thin wall only
 };
 
-// Places of samples that are known well along their rays, averaged over their neighbours, thinned, where `points` (the
-// object's) are missing; to `carve`, also rays beside all samples: one wrong outline may cut off what is thin.
-// `diagonal`: the object's, world units.
+struct RimOptions {
+  double diagonal;         // the object's, world units
+  bool carve = false;      // with rays beside all samples: one wrong outline may cut off what is thin
+  bool few_sides = false;  // with samples that are known less well along their rays, or have no others beside them
+};
+
+// Places of samples, averaged over their neighbours, thinned, where `points` (the object's) are missing.
 RimEvidence RimFromOutline(const Scene& scene, const std::vector<OutlineSample>& outline,
-                           const std::vector<Eigen::Vector3d>& points, double diagonal, bool carve);
+                           const std::vector<Eigen::Vector3d>& points, const RimOptions& options);
+
+// Where not even an outline's place is near: places on what the outlines leave room for (`hull`), thinned, as far as
+// they lie well outside of `shape`, away from its points and above the ground. The object ends not far below: without
+// them it would end at its last point.
+void AddHullPoints(const TriangleMesh& hull, const TriangleMesh& shape, const std::vector<Eigen::Vector3d>& points,
+                   const std::optional<Eigen::Hyperplane<double, 3>>& ground, RimEvidence& rim);
 
 // Share of the samples whose ray, moved into the object by a little, meets the mesh and, moved out by as much, does
 // not. 1 if there are none.

@@ -15,9 +15,9 @@ namespace {
 // Views that look through a hole before it is one: so many, and one of so many. Then what two see through is none of
 // the object's, as far as it hangs together with it: whoever looks in aslant sees more of it.
 constexpr size_t kMinViews = 3, kShareOfViews = 10, kViewsOnce = 2;
-constexpr double kCoarse = 2.5;                            // voxels: no hole in an outline is as narrow
-constexpr double kMarginVoxels = 4;                        // beyond the mesh
-constexpr double kLeastVolume = 1e-3;                      // of the mesh's: a tunnel
+constexpr double kCoarse = 2.5;                         // voxels: no hole in an outline is as narrow
+constexpr double kMarginVoxels = 4;                     // beyond the mesh
+constexpr double kLeastVolume = 1e-3;                   // of the mesh's: a tunnel
 constexpr std::array<double, 3> kClosings = {0, 1, 2};  // voxels: what is ragged in a tunnel's walls
 constexpr double kNarrow = 4;                           // voxels: radius that a tunnel has at least
 

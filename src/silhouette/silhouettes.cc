@@ -24,6 +24,7 @@ struct Silhouettes::Impl {
   Scene views;  // without points
   internal::MaskSet masks;
   std::vector<OutlineSample> outline, rays;
+  TriangleMesh hull;
 };
 
 namespace {
@@ -249,6 +250,7 @@ std::optional<double> Silhouettes::SeenThroughBy(const Eigen::Vector3d& x, size_
   return internal::SeenThroughBy(impl_->views, impl_->masks, views, x);
 }
 
+const TriangleMesh& Silhouettes::hull() const { return impl_->hull; }
 size_t Silhouettes::num_views() const { return impl_->masks.masks.size(); }
 
 Silhouettes FindSilhouettes(const Scene& scene, const ImageSource& images, const RoughObject& rough,
@@ -278,6 +280,8 @@ Silhouettes FindSilhouettes(const Scene& scene, const ImageSource& images, const
     if (Confirm(work, candidates, out.impl_->masks, out.impl_->outline, out.impl_->rays, s, progress)) break;
     hull = HullOf(work, candidates);
   }
+  if (out.from_few_sides())
+    out.impl_->hull = internal::HullOfMost(scene, out.impl_->masks.masks, work.Ball(), rough.ground);
   return out;
 }
 

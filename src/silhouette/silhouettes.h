@@ -64,6 +64,11 @@ class Silhouettes {
   std::optional<double> SeenThroughBy(const Eigen::Vector3d& x, size_t views) const;
   size_t num_views() const;  // trusted ones
 
+  // Whether most places on the outline have no other view's beside them.
+  bool from_few_sides() const { return rays().size() > 2 * outline().size(); }
+  // From few sides: what nearly all trusted views leave room for, above the ground, coarsely. Empty otherwise.
+  const TriangleMesh& hull() const;
+
  private:
   friend Silhouettes FindSilhouettes(const Scene&, const ImageSource&, const RoughObject&, const SilhouetteOptions&,
                                      SilhouetteSummary*, Progress&);

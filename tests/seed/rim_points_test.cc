@@ -43,7 +43,7 @@ class RimPoints : public ::testing::Test {
 };
 
 TEST_F(RimPoints, LieOnTheSurfaceApartFromEachOther) {
-  const RimEvidence rim = RimFromOutline(scene_, outline_, {}, diagonal_, false);
+  const RimEvidence rim = RimFromOutline(scene_, outline_, {}, {diagonal_});
   ASSERT_GT(rim.points.size(), 100u);
   EXPECT_THAT(rim.free_lines, ::testing::IsEmpty());
   for (size_t i = 0; i < rim.points.size(); ++i) {
@@ -56,21 +56,58 @@ TEST_F(RimPoints, LieOnTheSurfaceApartFromEachOther) {
 }
 
 TEST_F(RimPoints, LeaveRoomAroundSparsePoints) {
-  const Eigen::Vector3d known = RimFromOutline(scene_, outline_, {}, diagonal_, false).points.front().position;
-  const RimEvidence rim = RimFromOutline(scene_, outline_, {known}, diagonal_, false);
+  const Eigen::Vector3d known = RimFromOutline(scene_, outline_, {}, {diagonal_}).points.front().position;
+  const RimEvidence rim = RimFromOutline(scene_, outline_, {known}, {diagonal_});
   ASSERT_FALSE(rim.points.empty());
   for (const RimPoint& p : rim.points) EXPECT_GT((p.position - known).norm(), 0.02 * diagonal_);
 }
 
 TEST_F(RimPoints, NeedOtherViewsAndAPlaceAlongTheRay) {
   std::vector<OutlineSample> one_view(outline_.begin(), outline_.begin() + 80);
-  EXPECT_THAT(RimFromOutline(scene_, one_view, {}, diagonal_, false).points, ::testing::IsEmpty());
+  EXPECT_THAT(RimFromOutline(scene_, one_view, {}, {diagonal_}).points, ::testing::IsEmpty());
   const std::vector<OutlineSample> anywhere = SphereOutline(scene_, 80, 0.5 * diagonal_);
-  EXPECT_THAT(RimFromOutline(scene_, anywhere, {}, diagonal_, false).points, ::testing::IsEmpty());
+  EXPECT_THAT(RimFromOutline(scene_, anywhere, {}, {diagonal_}).points, ::testing::IsEmpty());
+}
+
+TEST_F(RimPoints, FromFewSidesAreAsWellKnownAsTheirPlaces) {
+  const Scene few = DomeScene(8, 5);
+  const double interval = 0.2 * diagonal_;
+  const std::vector<OutlineSample> outline = SphereOutline(few, 80, interval);
+  EXPECT_THAT(RimFromOutline(few, outline, {}, {diagonal_}).points, ::testing::IsEmpty());
+  const RimEvidence rim = RimFromOutline(few, outline, {}, {.diagonal = diagonal_, .few_sides = true});
+  ASSERT_GT(rim.points.size(), 100u);
+  for (const RimPoint& p : rim.points) {
+    EXPECT_NEAR(p.position.norm(), 1, p.sigma);
+    EXPECT_GT(p.sigma, interval * interval / (8 * diagonal_));
+  }
+}
+
+// Half of the object has points; the other half is expected to lie flat on the ground.
+TEST_F(RimPoints, OfAHullAreWhereNothingElseIs) {
+  const TriangleMesh hull = testing::Icosphere(4);
+  TriangleMesh shape = hull;
+  for (Eigen::Vector3d& x : shape.vertices) x.x() = std::max(x.x(), 0.1);
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3d& x : hull.vertices)
+    if (x.x() > 0.1) points.push_back(x);
+  const Eigen::Hyperplane<double, 3> ground(Eigen::Vector3d::UnitZ(), 0.5);
+  RimEvidence rim;
+  AddHullPoints(hull, shape, points, ground, rim);
+  ASSERT_GT(rim.points.size(), 15u);
+  for (size_t i = 0; i < rim.points.size(); ++i) {
+    const RimPoint& p = rim.points[i];
+    EXPECT_LT(p.position.x(), 0.05);
+    EXPECT_GT(p.position.z(), -0.5);
+    EXPECT_GT(p.normal.dot(p.position), 0.99);
+    for (size_t j = 0; j < i; ++j) EXPECT_GT((p.position - rim.points[j].position).norm(), 0.03 * diagonal_);
+  }
+  RimEvidence nothing;
+  AddHullPoints({}, shape, points, ground, nothing);
+  EXPECT_THAT(nothing.points, ::testing::IsEmpty());
 }
 
 TEST_F(RimPoints, FreeLinesPassTheObject) {
-  const RimEvidence rim = RimFromOutline(scene_, outline_, {}, diagonal_, true);
+  const RimEvidence rim = RimFromOutline(scene_, outline_, {}, {.diagonal = diagonal_, .carve = true});
   ASSERT_EQ(rim.free_lines.size(), outline_.size());
   for (const FreeLine& line : rim.free_lines) {
     const Eigen::Vector3d along = (line.from - line.eye).normalized();

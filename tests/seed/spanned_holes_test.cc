@@ -14,9 +14,8 @@ namespace {
 
 TriangleMesh Pierced(const RingScene& ring, const std::vector<cv::Mat>& masks) {
   const TriangleMesh disc = RingScene::Disc();
-  const Silhouettes silhouettes =
-      FindSilhouettes(ring.scene, MemoryImages(std::vector<cv::Mat>(masks.size()), masks),
-                      {disc, std::vector<int8_t>(ring.scene.points.size(), 1)});
+  const Silhouettes silhouettes = FindSilhouettes(ring.scene, MemoryImages(std::vector<cv::Mat>(masks.size()), masks),
+                                                  {disc, std::vector<int8_t>(ring.scene.points.size(), 1)});
   EXPECT_GT(silhouettes.num_views(), 0u);
   return WithSpannedHoles(silhouettes, disc, 0.02, 0.05);
 }

@@ -31,9 +31,7 @@ struct RingScene {
       }
   }
 
-  static double Distance(const Eigen::Vector3d& x) {
-    return std::hypot(x.head<2>().norm() - kMajor, x.z()) - kMinor;
-  }
+  static double Distance(const Eigen::Vector3d& x) { return std::hypot(x.head<2>().norm() - kMajor, x.z()) - kMinor; }
 
   // What a surface through the points makes of it: the hole is spanned.
   static TriangleMesh Disc() {
