@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -31,14 +30,13 @@ constexpr double kGoodWithout = 0.75;  // share that fits: what points alone exp
 constexpr double kWorthwhile = 0.85;
 constexpr size_t kColorViews = 48;
 constexpr size_t kColorMemory = size_t{1} << 29;
-constexpr double kVoxelRel = 0.004;                    // of the diagonal: as fine as the smooth surface once divided
-constexpr double kRoundingRel = 0.012;                 // of the diagonal: of a hollow's edge, about the thinnest wall
-constexpr double kLeastHollow = 1e-3;                  // of the volume: less is for the refinement
-constexpr double kLeastTaken = 0.25;                   // of the hollows' volume: less, and nothing was opened
-constexpr double kFineRel = 0.003;                     // of the diagonal
-constexpr std::array<double, 2> kClosings = {1.5, 3};  // voxels
-constexpr double kStayRel = 0.01;  // of the diagonal: what is narrower in a hollow's lining is noise
-constexpr int kSubdivisions = 2;   // of the smooth surface: its facets must not show at the finest voxels
+constexpr double kVoxelRel = 0.004;     // of the diagonal: as fine as the smooth surface once divided
+constexpr double kRoundingRel = 0.012;  // of the diagonal: of a hollow's edge, about the thinnest wall
+constexpr double kLeastHollow = 1e-3;   // of the volume: less is for the refinement
+constexpr double kLeastTaken = 0.25;    // of the hollows' volume: less, and nothing was opened
+constexpr double kFineRel = 0.003;      // of the diagonal
+constexpr double kStayRel = 0.01;       // of the diagonal: what is narrower in a hollow's lining is noise
+constexpr int kSubdivisions = 2;        // of the smooth surface: its facets must not show at the finest voxels
 
 double MedianDistance(const TriangleMesh& mesh, const Scene& scene, const std::vector<uint8_t>& used) {
   const ClosestPointQuery query(mesh);
@@ -144,21 +142,6 @@ TriangleMesh Subdivided(const Shape& shape) {
 // What comes of a finer change to the surface, unless it tears tunnels: then what was found fits together nowhere.
 TriangleMesh UnlessTorn(const TriangleMesh& before, const TriangleMesh& after) {
   return after.empty() || GenusOf(after) > GenusOf(before) ? before : after;
-}
-
-// Rims that the smooth surface is too stiff for, by the outlines.
-TriangleMesh WithRim(const Scene& scene, const Silhouettes& silhouettes, const TriangleMesh& smooth) {
-  const double voxel = kVoxelRel * Diagonal(smooth);
-  const TriangleMesh rim = MissingRim(scene, silhouettes, smooth, voxel);
-  if (rim.empty()) return smooth;
-  const TriangleMesh joined = Union(smooth, rim, voxel);
-  // A chink between the two, or in a thin wall, may make a tunnel: as little is closed as leaves the fewest.
-  TriangleMesh with = LargestPiece(joined);
-  for (size_t i = 0; i < kClosings.size() && GenusOf(with) > 0; ++i) {
-    TriangleMesh closed = LargestPiece(Closing(joined, voxel, kClosings[i] * voxel));
-    if (GenusOf(closed) < GenusOf(with)) with = std::move(closed);
-  }
-  return GenusOf(with) > GenusOf(smooth) ? smooth : SmoothChangedParts(scene, silhouettes.outline(), smooth, with, 0);
 }
 
 // Holes that it spans, through which photographs look.
@@ -267,7 +250,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   }
   out.mesh = shape.sparse.mesh;
   const TriangleMesh faired = Subdivided(shape);
-  out.smooth = s.outlines_used ? WithRim(scene, silhouettes, faired) : faired;
+  out.smooth = s.outlines_used ? WithRim(scene, silhouettes, faired, kVoxelRel * Diagonal(faired)) : faired;
   out.smooth = WithHoles(scene, silhouettes, out.smooth, s);
   if (images && options.open_hollows)
     out.smooth = WithoutHollows(scene, shape.sparse, out.smooth, silhouettes.outline(), *images, s, progress);

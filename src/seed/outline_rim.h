@@ -8,8 +8,12 @@
 namespace glint {
 
 // Where places on the outlines, well known along their rays, lie outside of the closed mesh, what the outlines of all
-// views leave room for around them. A closed mesh, to be joined to the other; empty if there are no such places.
-// `voxel`: world units.
-TriangleMesh MissingRim(const Scene& scene, const Silhouettes& silhouettes, const TriangleMesh& mesh, double voxel);
+// views leave room for within `reach` of them. A closed mesh, to be joined to the other; empty if there are no such
+// places. World units.
+TriangleMesh MissingRim(const Scene& scene, const Silhouettes& silhouettes, const TriangleMesh& mesh, double reach,
+                        double voxel);
+
+// The closed mesh with it, as narrow as makes no tunnel, and smooth; as it is if nothing is missing.
+TriangleMesh WithRim(const Scene& scene, const Silhouettes& silhouettes, const TriangleMesh& mesh, double voxel);
 
 }  // namespace glint

@@ -6,8 +6,10 @@
 #include <opencv2/core.hpp>
 
 #include "core/parallel.h"
+#include "geometry/mesh_checks.h"
 #include "io/project_images.h"
 #include "sdf/csg.h"
+#include "seed/shape.h"
 #include "tests/seed/simulated_scene.h"
 #include "tests/support/ball_mesh.h"
 
@@ -24,7 +26,7 @@ class MissingRimTest : public ::testing::Test {
     for (View& view : scene_.views) view.camera = {1, CameraModel::kPinhole, 280, 210, {315, 315, 140, 105}};
   }
 
-  TriangleMesh Find(double flange_radius) {
+  Silhouettes Seen(double flange_radius) const {
     std::vector<cv::Mat> images(kViews), masks(kViews);
     ParallelFor(kViews, 1, [&](size_t v) {
       images[v] = cv::Mat(210, 280, CV_8UC3, cv::Scalar(80, 80, 80));
@@ -35,9 +37,12 @@ class MissingRimTest : public ::testing::Test {
             masks[v].at<uint8_t>(y, x) = 255;
     });
     const MemoryImages source(images, masks);
-    const Silhouettes silhouettes = FindSilhouettes(scene_, source, {ball_, {}});
+    Silhouettes silhouettes = FindSilhouettes(scene_, source, {ball_, {}});
     EXPECT_GT(silhouettes.outline().size(), 700u);
-    return MissingRim(scene_, silhouettes, ball_, 0.015);
+    return silhouettes;
+  }
+  TriangleMesh Find(const Silhouettes& silhouettes) const {
+    return MissingRim(scene_, silhouettes, ball_, 0.02 * Diagonal(ball_), 0.015);
   }
 
   // In steps that the flange's thickness does not slip through.
@@ -56,7 +61,8 @@ class MissingRimTest : public ::testing::Test {
 
 TEST_F(MissingRimTest, WhatTheOutlinesShowIsAdded) {
   constexpr double kFlangeRadius = 1.1;
-  const TriangleMesh rim = Find(kFlangeRadius);
+  const Silhouettes silhouettes = Seen(kFlangeRadius);
+  const TriangleMesh rim = Find(silhouettes);
   ASSERT_FALSE(rim.empty());
   const TriangleMesh whole = Union(ball_, rim, 0.015);
   // The flange's edge is reached all around, and nothing stands out of the object above it (below it
@@ -71,9 +77,18 @@ TEST_F(MissingRimTest, WhatTheOutlinesShowIsAdded) {
     }
   }
   for (const double radius : reached) EXPECT_NEAR(radius, kFlangeRadius, 0.025);
+
+  const TriangleMesh joined = WithRim(scene_, silhouettes, ball_, 0.015);
+  EXPECT_TRUE(CheckMeshSoundness(joined).sound());
+  EXPECT_EQ(GenusOf(joined), 0);
+  EXPECT_GT(BoundingBox(joined).sizes().x(), 2 * kFlangeRadius - 0.1);
 }
 
-TEST_F(MissingRimTest, NothingIsAddedToWhatFits) { EXPECT_TRUE(Find(0).empty()); }
+TEST_F(MissingRimTest, NothingIsAddedToWhatFits) {
+  const Silhouettes silhouettes = Seen(0);
+  EXPECT_TRUE(Find(silhouettes).empty());
+  EXPECT_EQ(WithRim(scene_, silhouettes, ball_, 0.015).vertices.size(), ball_.vertices.size());
+}
 
 }  // namespace
 }  // namespace glint
