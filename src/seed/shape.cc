@@ -65,7 +65,8 @@ FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachme
   folded = false;
   for (int attempt = 0; attempt < kMaxStiffenings; ++attempt) {
     result = FairThroughPoints(mesh, attachments, context, options);
-    if (SelfIntersections(result.mesh, 1).empty()) return result;
+    // A thin wall may also pass through itself as a whole: it is inside out then.
+    if (SignedVolume(result.mesh) > 0 && SelfIntersections(result.mesh, 1).empty()) return result;
     options.smoothing *= 1.6;
   }
   // Its inside, by winding number, has a surface that does not, but two sheets of it may touch.

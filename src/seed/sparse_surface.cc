@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPoor = 0.5;           // share of the object's points that a solid explains and does not hide
 constexpr double kEnoughOfAWall = 0.9;  // the same share
+constexpr double kMuchBetter = 0.5;     // or so much more of them than a solid
 constexpr double kWallRel = 0.02;       // of the object's diagonal
 constexpr double kBesideRel = 0.02;     // of the diagonal
 constexpr size_t kMinContextViews = 3;  // two views agree on many a mismatch, and the context needs no rare points
@@ -109,12 +110,14 @@ SparseSurface MakeSparseSurface(const Scene& scene, const PointReliability& reli
   if (cells.tetrahedra.cells.empty()) return {};
   if (options.see_through) return Hull(scene, choice, cells);
   const Solid solid = BestSolid(cells, choice, options, num_points, views);
-  if (!rim.of_a_wall && solid.explained - solid.hidden >= kPoor * num_points) return SurfaceOf(cells, solid.labels);
+  const double of_solid = (solid.explained - solid.hidden) / num_points;
+  if (!rim.of_a_wall && of_solid >= kPoor) return SurfaceOf(cells, solid.labels);
   // It is torn, or fills what many looked into: a bowl of whose outside little is known. As a wall?
   AddBacks(scene, known);
   const SparseCells walled = triangulate();
   const Solid wall = BestSolid(walled, choice, options, num_points, views);
-  if (wall.explained - wall.hidden < kEnoughOfAWall * num_points) return SurfaceOf(cells, solid.labels);
+  const double of_wall = (wall.explained - wall.hidden) / num_points;
+  if (of_wall < kEnoughOfAWall && of_wall < of_solid + kMuchBetter) return SurfaceOf(cells, solid.labels);
   SparseSurface out = SurfaceOf(walled, wall.labels);
   out.is_wall = true;
   return out;
