@@ -221,11 +221,11 @@ cv::Mat CoreOdds(const SegmentInput& in, const cv::Mat& object, const cv::Mat& c
 
 // What of the core is not the object after all: the colours of the object are learned near and around it alone.
 cv::Mat Through(const SegmentInput& in, const cv::Mat& object, const cv::Mat& quiet, const cv::Mat& labels) {
-  const cv::Mat core = in.prior < -in.core, free = core & ~in.near;
-  cv::Mat known(labels.size(), CV_8U, cv::Scalar(kSurroundings)), mask;
+  const cv::Mat core = in.prior < -in.core, open = core & ~in.near;
+  cv::Mat known(labels.size(), CV_8U, cv::Scalar(kSurroundings)), mask(labels.size(), CV_8U, cv::Scalar(255));
   known.setTo(kObject, object);
-  known.setTo(kUnknown, free);
-  if (cv::countNonZero(free) == 0) return free;
+  known.setTo(kUnknown, open);
+  if (cv::countNonZero(open) == 0) return core & ~mask;
   for (int round = 0; round < kCoreRounds; ++round) {
     if (round > 0) known.setTo(kObject, mask), known.setTo(kSurroundings, ~mask);
     mask = Cut(quiet, CoreOdds(in, object, ColorEvidence(labels, known)));
