@@ -53,9 +53,8 @@ cv::Mat WithoutIslands(const cv::Mat& mask, const cv::Mat& core) {
 
 // Where the object's points are near, CV_8U; everywhere, if too few are seen.
 cv::Mat NearPoints(const cv::Mat& hints, double radius) {
-  cv::Mat near, away;
+  cv::Mat away, labels;
   const cv::Mat elsewhere = hints <= 0;
-  cv::Mat labels;
   if (cv::connectedComponents(~elsewhere, labels, 8) <= kFewPoints)
     return cv::Mat(hints.size(), CV_8U, cv::Scalar(255));
   cv::distanceTransform(elsewhere, away, cv::DIST_L2, cv::DIST_MASK_5);
