@@ -101,16 +101,20 @@ bool DropDoubted(const std::vector<Attachment>& attachments, const FairResult& f
 
 }  // namespace
 
+TriangleMesh PieceOf(const TriangleMesh& mesh, const Components& pieces, size_t k) {
+  TriangleMesh out = mesh;
+  out.faces.clear();
+  for (size_t f = 0; f < mesh.faces.size(); ++f)
+    if (pieces.of_face[f] == k) out.faces.push_back(mesh.faces[f]);
+  return WithoutUnusedVertices(out);
+}
+
 TriangleMesh LargestPiece(const TriangleMesh& mesh) {
   const Components pieces = FindComponents(mesh, BuildEdgeTopology(mesh));
   size_t largest = 0;
   for (size_t k = 1; k < pieces.list.size(); ++k)
     if (pieces.list[k].volume > pieces.list[largest].volume) largest = k;
-  TriangleMesh out = mesh;
-  out.faces.clear();
-  for (size_t f = 0; f < mesh.faces.size(); ++f)
-    if (pieces.of_face[f] == largest) out.faces.push_back(mesh.faces[f]);
-  return WithoutUnusedVertices(out);
+  return PieceOf(mesh, pieces, largest);
 }
 
 long GenusOf(const TriangleMesh& mesh) {

@@ -6,6 +6,7 @@
 
 #include "colmap/scene.h"
 #include "core/progress.h"
+#include "geometry/components.h"
 #include "geometry/triangle_mesh.h"
 #include "seed/fair.h"
 #include "seed/object_choice.h"
@@ -27,7 +28,8 @@ struct Shape {
 Shape MakeShape(const Scene& scene, PointReliability& reliability, ObjectChoice& choice, const RimEvidence& rim,
                 const CutOptions& cut, const FairOptions& fair, Progress& progress);
 
-// The connected piece with the most volume.
+// One of the mesh's connected pieces, and the one with the most volume.
+TriangleMesh PieceOf(const TriangleMesh& mesh, const Components& pieces, size_t k);
 TriangleMesh LargestPiece(const TriangleMesh& mesh);
 
 // Sum over the pieces; the mesh is closed and manifold.

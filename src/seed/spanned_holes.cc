@@ -34,14 +34,8 @@ std::vector<TriangleMesh> SeenThrough(const Silhouettes& silhouettes, const Tria
   });
   const Components pieces = FindComponents(through, BuildEdgeTopology(through));
   std::vector<TriangleMesh> out;
-  for (size_t k = 0; k < pieces.list.size(); ++k) {
-    if (pieces.list[k].volume < kLeastVolume * SignedVolume(mesh)) continue;
-    TriangleMesh piece = through;
-    piece.faces.clear();
-    for (size_t f = 0; f < through.faces.size(); ++f)
-      if (pieces.of_face[f] == k) piece.faces.push_back(through.faces[f]);
-    out.push_back(WithoutUnusedVertices(piece));
-  }
+  for (size_t k = 0; k < pieces.list.size(); ++k)
+    if (pieces.list[k].volume >= kLeastVolume * SignedVolume(mesh)) out.push_back(PieceOf(through, pieces, k));
   std::stable_sort(out.begin(), out.end(),
                    [](const TriangleMesh& a, const TriangleMesh& b) { return SignedVolume(a) > SignedVolume(b); });
   return out;
