@@ -86,12 +86,14 @@ struct Made {
   ObjectChoice choice;
 };
 
+bool Folded(const Shape& shape) { return shape.fairing == Fairing::kFolded; }
+
 // Where no smooth solid comes of the points: slivers of a thin wall, which needs a back.
 void MakeOfAWall(const Scene& scene, const Made& points, const SeedOptions& options, Made& made, Progress& progress) {
   Made wall = points;
   wall.shape =
       MakeShape(scene, wall.reliability, wall.choice, {.of_a_wall = true}, options.surface, options.smooth, progress);
-  if (wall.shape.sparse.is_wall && !wall.shape.folded) made = std::move(wall);
+  if (wall.shape.sparse.is_wall && wall.shape.fairing < made.shape.fairing) made = std::move(wall);
 }
 
 // Outlines around the shape that stands so far, and the shape of points and outlines, which takes its place if it fits
@@ -122,7 +124,7 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
   rim.of_a_wall = points_alone.shape.sparse.is_wall;
   Made with{{}, points_alone.reliability, points_alone.choice};
   with.shape = MakeShape(scene, with.reliability, with.choice, rim, options.surface, options.smooth, progress);
-  if (with.shape.sparse.mesh.empty() || (with.shape.folded && !made.shape.folded)) return false;
+  if (with.shape.sparse.mesh.empty() || (Folded(with.shape) && !Folded(made.shape))) return false;
   const double fit = OutlineFit(scene, outline, with.shape.smooth);
   const double most_left = s.outlines_used ? 1 : kWorthwhile;
   if (1 - fit >= most_left * (1 - s.outline_fit)) return false;
@@ -136,7 +138,7 @@ bool FollowOutlines(const Scene& scene, const Made& points_alone, const SeedOpti
 // Finer, unless that swings through itself where the surface is thin and rough.
 TriangleMesh Subdivided(const Shape& shape) {
   TriangleMesh fine = SubdivideSmoothly(shape.smooth, kSubdivisions);
-  return shape.folded || SelfIntersections(fine, 1).empty() ? fine : shape.smooth;
+  return Folded(shape) || SelfIntersections(fine, 1).empty() ? fine : shape.smooth;
 }
 
 // What comes of a finer change to the surface, unless it tears tunnels: then what was found fits together nowhere.
@@ -231,7 +233,8 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   Made made{{}, reliability, choice};
   Made alone = made;  // before points are taken out of it
   made.shape = MakeShape(scene, made.reliability, made.choice, {}, options.surface, options.smooth, progress);
-  if (made.shape.folded) MakeOfAWall(scene, alone, options, made, progress);
+  if (made.shape.fairing != Fairing::kSmooth && !made.shape.sparse.is_wall)
+    MakeOfAWall(scene, alone, options, made, progress);
   alone.shape = made.shape;
   Silhouettes silhouettes;
   for (int pass = 0; pass < kOutlinePasses && images && !made.shape.sparse.mesh.empty(); ++pass)
@@ -240,7 +243,7 @@ SeedResult BuildSeed(const Scene& scene, const SeedOptions& options, SeedSummary
   const Shape& shape = made.shape;
   reliability = std::move(made.reliability);
   choice = std::move(made.choice);
-  if (shape.folded) s.warnings.push_back("the smooth seed passes through itself");
+  if (Folded(shape)) s.warnings.push_back("the smooth seed passes through itself");
   CountPoints(reliability, choice, s);
   progress.Advance();
   progress.ThrowIfCancelled();

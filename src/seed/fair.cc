@@ -13,6 +13,7 @@
 #include "core/square.h"
 #include "geometry/closest_point.h"
 #include "geometry/edge_topology.h"
+#include "geometry/point_index.h"
 #include "geometry/pseudo_normals.h"
 #include "seed/positive_solve.h"
 #include "seed/remesh.h"
@@ -33,6 +34,7 @@ constexpr double kStiffStart = 2.5;  // times the smoothing asked for
 constexpr double kMaxGrowth =
     1.5;  // times the sparse surface's size: more is a bend that runs away where nothing holds
 constexpr size_t kGrain = 256;
+constexpr int kFacesAround = 64;
 constexpr double kTrustedRange = 4;  // usual distances: farther attachments lose most of their weight
 
 std::vector<Attachment> Leading(const std::vector<Attachment>& attachments) {
@@ -67,14 +69,58 @@ struct Foot {
   double distance;
 };
 
+Foot FootAt(const TriangleMesh& mesh, int face, const TrianglePoint& at) {
+  const Eigen::Vector3i& f = mesh.faces[face];
+  return {f, Barycentric(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], at.point),
+          std::sqrt(at.squared_distance)};
+}
+
+// Closest points on the side of the surface that faces `outward`, as far as there is one nearby.
+class FacingPoints {
+ public:
+  explicit FacingPoints(const TriangleMesh& mesh) : mesh_(mesh), middles_(Middles(mesh)), index_(middles_) {}
+
+  std::optional<Foot> Find(const Eigen::Vector3d& x, const Eigen::Vector3d& outward) const {
+    std::optional<std::pair<TrianglePoint, int>> best;
+    for (const int face : index_.Nearest(x, kFacesAround)) {
+      const Eigen::Vector3i& f = mesh_.faces[face];
+      const Eigen::Vector3d &a = mesh_.vertices[f[0]], &b = mesh_.vertices[f[1]], &c = mesh_.vertices[f[2]];
+      if ((b - a).cross(c - a).dot(outward) <= 0) continue;
+      const TrianglePoint at = ClosestOnTriangle(a, b, c, x);
+      if (!best || at.squared_distance < best->first.squared_distance) best = {at, face};
+    }
+    if (!best) return std::nullopt;
+    return FootAt(mesh_, best->second, best->first);
+  }
+
+ private:
+  static std::vector<Eigen::Vector3d> Middles(const TriangleMesh& mesh) {
+    std::vector<Eigen::Vector3d> middles;
+    for (const Eigen::Vector3i& f : mesh.faces)
+      middles.push_back((mesh.vertices[f[0]] + mesh.vertices[f[1]] + mesh.vertices[f[2]]) / 3);
+    return middles;
+  }
+
+  const TriangleMesh& mesh_;
+  const std::vector<Eigen::Vector3d> middles_;
+  const PointIndex index_;
+};
+
 std::vector<Foot> FeetOf(const std::vector<Attachment>& attachments, const TriangleMesh& mesh) {
   const ClosestPointQuery query(mesh);
+  std::optional<FacingPoints> facing;
+  if (std::any_of(attachments.begin(), attachments.end(), [](const Attachment& a) { return !a.outward.isZero(); }))
+    facing.emplace(mesh);
   std::vector<Foot> feet(attachments.size());
   ParallelFor(feet.size(), kGrain, [&](size_t i) {
-    const MeshPoint at = *query.Find(attachments[i].position);
-    const Eigen::Vector3i& f = mesh.faces[at.face];
-    feet[i] = {f, Barycentric(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], at.point),
-               std::sqrt(at.squared_distance)};
+    const Attachment& a = attachments[i];
+    if (!a.outward.isZero())
+      if (const std::optional<Foot> foot = facing->Find(a.position, a.outward)) {
+        feet[i] = *foot;
+        return;
+      }
+    const MeshPoint at = *query.Find(a.position);
+    feet[i] = FootAt(mesh, at.face, at);
   });
   return feet;
 }

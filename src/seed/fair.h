@@ -28,6 +28,8 @@ struct Attachment {
   double credit = 1;
   int point = -1;      // the caller's name for it
   bool extra = false;  // no sparse point: how far the surface may bend is not for it to say
+  // Out of the object, where that is known: the other side of a thin wall may be closer. Zero: not known.
+  Eigen::Vector3d outward = Eigen::Vector3d::Zero();
 };
 
 // What is known besides the points.

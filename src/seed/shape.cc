@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "geometry/components.h"
 #include "geometry/mesh_checks.h"
+#include "geometry/pseudo_normals.h"
 #include "geometry/self_intersections.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
@@ -17,6 +20,10 @@ namespace {
 
 constexpr int kRounds = 3;  // of surface, fairing, and leaving out the points that it disbelieves
 constexpr int kMaxStiffenings = 4;
+constexpr double kStiffer = 1.6;
+// Of a wall's stiffness, tried first: two sheets that are closer to each other than their points pull each other
+// through.
+constexpr double kSofter = 0.5;
 // Edges of the smooth seed: about as fine as it is, and others where two sheets touch on those voxels.
 constexpr std::array<double, 3> kMendVoxels = {0.7, 0.5, 1.0};
 constexpr double kLeastMended = 0.5;      // of the sparse surface's volume
@@ -34,12 +41,16 @@ Attachment AttachmentOf(const Scene& scene, const PointReliability& reliability,
 std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& surface,
                                     const PointReliability& reliability, const RimEvidence& rim) {
   const double hidden_sigma = kHiddenSigmaRel * Diagonal(surface.mesh);
+  // The other side of a wall may be closer than the one that a place is on.
+  std::vector<Eigen::Vector3d> outward(surface.mesh.vertices.size(), Eigen::Vector3d::Zero());
+  if (surface.is_wall) outward = ComputePseudoNormals(surface.mesh, BuildEdgeTopology(surface.mesh)).vertex;
   std::vector<Attachment> attachments;
   for (size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
     if (surface.scene_point[v] == kMiddleVertex) continue;
     Attachment a{surface.mesh.vertices[v], hidden_sigma, 1, surface.scene_point[v]};
     if (const int point = surface.scene_point[v]; point >= 0) {
       a = AttachmentOf(scene, reliability, point);
+      if (surface.is_wall) outward[v] = TowardViews(scene, scene.points[point]);
     } else if (point == kBackVertex) {
       if (!rim.points.empty()) a.sigma = kBackSigmaRel * Diagonal(surface.mesh);
       a.extra = true;
@@ -47,42 +58,63 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
       a.sigma = rim.points[kFirstRimVertex - point].sigma;
       a.extra = true;
     }
+    a.outward = outward[v];
     attachments.push_back(a);
   }
   for (const int point : surface.beside) attachments.push_back(AttachmentOf(scene, reliability, point));
   return attachments;
 }
 
+// A thin wall may also pass through itself as a whole: it is inside out then.
+bool InsideOut(const TriangleMesh& mesh) { return SignedVolume(mesh) <= 0; }
+
+bool PassesThroughItself(const TriangleMesh& mesh) { return InsideOut(mesh) || !SelfIntersections(mesh, 1).empty(); }
+
 bool BoundsASolid(const TriangleMesh& mesh) {
   return CheckMeshSoundness(mesh, {.self_intersections = false, .max_places = 0}).bounds_a_solid() &&
          SelfIntersections(mesh, 1).empty();
 }
 
-// Fairs ever more stiffly until the surface does not pass through itself; if it always does, takes it by its inside.
-FairResult FairWithoutFolds(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,
-                            const FairContext& context, FairOptions options, bool& folded) {
-  FairResult result;
-  folded = false;
-  for (int attempt = 0; attempt < kMaxStiffenings; ++attempt) {
-    result = FairThroughPoints(mesh, attachments, context, options);
-    // A thin wall may also pass through itself as a whole: it is inside out then.
-    if (SignedVolume(result.mesh) > 0 && SelfIntersections(result.mesh, 1).empty()) return result;
-    options.smoothing *= 1.6;
-  }
-  // Its inside, by winding number, has a surface that does not, but two sheets of it may touch.
+// The inside of a surface that passes through itself, by winding number: its surface does not, but two sheets of it may
+// touch, which other voxels may part. Nothing if they do not, or if little is left of `volume`.
+std::optional<TriangleMesh> Mended(const TriangleMesh& crossing, double edge, double volume) {
   for (const double edges : kMendVoxels) {
-    const double voxel = edges * options.edge_rel * Diagonal(result.mesh);
-    TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(result.mesh, voxel, {.sign = "winding"})));
-    if (SignedVolume(mended) < kLeastMended * SignedVolume(mesh) || !BoundsASolid(mended)) continue;
-    result.mesh = std::move(mended);
-    return result;
+    TriangleMesh mended = LargestPiece(ExtractMesh(MeshToLevelSet(crossing, edges * edge, {.sign = "winding"})));
+    if (SignedVolume(mended) >= kLeastMended * volume && BoundsASolid(mended)) return mended;
+  }
+  return std::nullopt;
+}
+
+// Fairs as asked for, a wall more softly, and ever more stiffly, until the surface does not pass through itself; if it
+// always does, takes the first that is not inside out by its inside.
+FairResult FairWithoutFolds(const SparseSurface& surface, const std::vector<Attachment>& attachments,
+                            const FairContext& context, const FairOptions& options, Fairing& how) {
+  const TriangleMesh& mesh = surface.mesh;
+  std::vector<double> factors = {1};
+  if (surface.is_wall) factors.push_back(kSofter);
+  for (int k = 1; k < kMaxStiffenings; ++k) factors.push_back(std::pow(kStiffer, k));
+  std::optional<FairResult> softest;
+  how = Fairing::kSmooth;
+  for (const double factor : factors) {
+    FairOptions attempt = options;
+    attempt.smoothing *= factor;
+    FairResult result = FairThroughPoints(mesh, attachments, context, attempt);
+    if (!PassesThroughItself(result.mesh)) return result;
+    if (!softest || (InsideOut(softest->mesh) && !InsideOut(result.mesh))) softest = std::move(result);
+  }
+  how = Fairing::kMended;
+  if (!InsideOut(softest->mesh)) {
+    auto mended = Mended(softest->mesh, options.edge_rel * Diagonal(softest->mesh), SignedVolume(mesh));
+    if (mended) return {*std::move(mended), std::move(softest->trust)};
   }
   // Nothing smooth comes of these points: their facets, which they do not contradict.
   TriangleMesh facets = RemeshEvenly(mesh, options.edge_rel * Diagonal(mesh));
   if (!BoundsASolid(facets)) facets = mesh;
-  folded = !BoundsASolid(facets);
-  if (!folded) result.mesh = std::move(facets);
-  return result;
+  if (BoundsASolid(facets))
+    softest->mesh = std::move(facets);
+  else
+    how = Fairing::kFolded;
+  return *std::move(softest);
 }
 
 // Takes the points that the smooth surface disbelieves out of the object; true if there were any.
@@ -133,13 +165,17 @@ Shape MakeShape(const Scene& scene, PointReliability& reliability, ObjectChoice&
     progress.ThrowIfCancelled();
     if (shape.sparse.mesh.empty()) return {};
     const std::vector<Attachment> attachments = Attachments(scene, shape.sparse, reliability, rim);
-    FairResult fair = FairWithoutFolds(shape.sparse.mesh, attachments, context, fair_options, shape.folded);
+    FairResult fair = FairWithoutFolds(shape.sparse, attachments, context, fair_options, shape.fairing);
     shape.smooth = std::move(fair.mesh);
     if (round + 1 < kRounds && DropDoubted(attachments, fair, reliability, choice)) continue;
     FairOptions stiffer = fair_options;
     stiffer.smoothing = SmoothingByHoldingOut(shape.smooth, attachments, context, fair_options);
-    if (stiffer.smoothing > fair_options.smoothing)
-      shape.smooth = FairWithoutFolds(shape.sparse.mesh, attachments, context, stiffer, shape.folded).mesh;
+    if (stiffer.smoothing > fair_options.smoothing) {
+      TriangleMesh stiff = FairThroughPoints(shape.sparse.mesh, attachments, context, stiffer).mesh;
+      if (PassesThroughItself(stiff)) break;
+      shape.smooth = std::move(stiff);
+      shape.fairing = Fairing::kSmooth;
+    }
     break;
   }
   return shape;

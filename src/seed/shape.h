@@ -17,10 +17,17 @@
 
 namespace glint {
 
+// How a surface came out of fairing.
+enum class Fairing {
+  kSmooth,
+  kMended,  // it passed through itself, and its inside was taken, or its facets
+  kFolded,  // not even they bound a solid
+};
+
 struct Shape {
   SparseSurface sparse;  // empty if the points enclose nothing
   TriangleMesh smooth;   // the same, faired through the points
-  bool folded = false;   // the smooth one passes through itself
+  Fairing fairing = Fairing::kSmooth;
 };
 
 // Takes points out of the object that the smooth surface disbelieves, which it notes in `reliability` and `choice`, and

@@ -238,17 +238,17 @@ Eigen::Vector3d OnBowl(double radius, double depth, double turn) {
 }
 
 // Many points on its inside, few on its outside.
-Scene BowlScene() {
+Scene BowlScene(int inside = 220, int outside = 60) {
   Scene scene = DomeScene(9, 5);
-  for (int i = 0; i < 220; ++i) {
-    const Eigen::Vector3d x = OnBowl(1, (i + 0.5) / 220, 2.4 * i);
+  for (int i = 0; i < inside; ++i) {
+    const Eigen::Vector3d x = OnBowl(1, (i + 0.5) / inside, 2.4 * i);
     AddPoint(scene, x, [&](const Eigen::Vector3d& eye) {
       const double share = x.z() / (x.z() - eye.z());  // of the way, where it leaves the mouth
       return (x + share * (eye - x)).norm() < 0.97;
     });
   }
-  for (int i = 0; i < 60; ++i) {
-    const Eigen::Vector3d x = OnBowl(1.06, 0.7 * i / 60, 2.4 * i);
+  for (int i = 0; i < outside; ++i) {
+    const Eigen::Vector3d x = OnBowl(1.06, 0.7 * i / outside, 2.4 * i);
     AddPoint(scene, x, [&](const Eigen::Vector3d& eye) { return x.dot(eye - x) > 0.2; });
   }
   AddGround(scene, -1.1, 4, 12);
@@ -265,6 +265,16 @@ TEST(BuildSeed, ABowlIsItsWallAndNotWhatIsInIt) {
   for (int i = 0; i < 100; ++i)
     off.push_back(std::sqrt(query.Find(OnBowl(1, 0.3 + 0.7 * i / 100, 2.4 * i))->squared_distance));
   EXPECT_LT(Median(off), 0.02);
+}
+
+// Two sheets that are closer to each other than their points: fairing must not pull one through the other, and fill the
+// bowl with what is left.
+TEST(BuildSeed, AWallOfFewPointsIsNotTurnedInsideOut) {
+  for (const int inside : {40, 60, 80, 100, 130, 170}) {
+    const SeedResult seed = BuildSeed(BowlScene(inside, inside / 10), Coarse());
+    ASSERT_FALSE(seed.smooth.empty()) << inside;
+    EXPECT_LT(SignedVolume(seed.smooth), 0.4 * 2 * M_PI / 3) << inside;
+  }
 }
 
 // Outlines show its outside but for the foot, which nobody sees: there it is still a wall.
