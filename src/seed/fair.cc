@@ -18,6 +18,7 @@
 #include "seed/positive_solve.h"
 #include "seed/remesh.h"
 #include "seed/thin_plate.h"
+#include "seed/wall_thickness.h"
 
 namespace glint {
 namespace {
@@ -283,18 +284,21 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     Springs springs(n);
     HoldUnseen(out.mesh, raw, context, spring * density * laplacian.area, options.stay, springs);
     for (size_t i = 0; i < feet.size(); ++i) springs.Attach(feet[i], attachments[i].position, weights[i]);
-    SparseMatrix system(n, n);
-    system.setFromTriplets(springs.entries.begin(), springs.entries.end());
-    system += ThinPlate(laplacian, lambda);
     if (round > 0) {
       const double flatness = leading.size() < attachments.size() ? kFlatness : 0;
       const double length = kRestLength / std::sqrt(all / area);
       const std::optional<Eigen::VectorXd> known = Knowledge(feet, out.trust, laplacian, length, all / area);
       if (!known) return out;  // as below
+      const std::vector<Eigen::Vector3d> normals = VertexNormals(out.mesh);
+      for (const WallPlace& place : WallPlaces(out.mesh, normals, laplacian, *known, length, diagonal))
+        springs.Hold(place.vertex, place.position, density * laplacian.area / Square(std::max(place.sigma, min_sigma)));
       const std::optional<Eigen::MatrixX3d> rest = RestCurvature(out.mesh, laplacian, length, *known, flatness);
       if (!rest) return out;
       springs.right += lambda / laplacian.area * (laplacian.stiffness * *rest);
     }
+    SparseMatrix system(n, n);
+    system.setFromTriplets(springs.entries.begin(), springs.entries.end());
+    system += ThinPlate(laplacian, lambda);
     const std::optional<Eigen::MatrixXd> x = SolvePositive(system, springs.right);
     if (!x) return out;  // singular: what stands so far is closed and sound
     TriangleMesh next = out.mesh;
