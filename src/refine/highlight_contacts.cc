@@ -7,6 +7,7 @@
 
 #include "core/median.h"
 #include "geometry/point_index.h"
+#include "refine/turn.h"
 
 namespace glint {
 namespace {
@@ -25,6 +26,10 @@ constexpr double kLobeSigmaShare = 0.08;
 // points are dense they decide; far from points the bundle does.
 constexpr double kBundleCaution = 3;
 constexpr double kLeastBundleSigma = 0.002;
+// A normal holds where the bundle has its contact and is imposed where its ray meets the surface. So far as these
+// differ, and the surface turns from the one to the other (a lip does), it says less.
+constexpr double kPlaceShare = 0.5;  // standard deviation, of the way between the two
+constexpr double kTurnVoxels = 1.5;
 
 // Standard deviation of the direction to the light at a contact, radians.
 double DirectionSigma(const Light& light, const Contact& contact) {
@@ -44,6 +49,7 @@ HighlightContacts::HighlightContacts(std::vector<Contact> contacts, std::vector<
       solve_lights_(std::move(solve_lights)),
       use_lobes_(use_lobes),
       misfit_(contacts_.size(), 0),
+      curvature_(contacts_.size(), 0),
       lobes_(contacts_.size()) {}
 
 double HighlightContacts::Follow(const TriangleMesh& surface, const LevelSet& field, bool reliable_normals,
@@ -66,7 +72,8 @@ std::vector<double> HighlightContacts::LayOn(const RayCaster& caster, const Leve
                                              double max_incidence) {
   std::vector<double> motion;
   num_on_surface_ = 0;
-  for (Contact& contact : contacts_) {
+  for (size_t i = 0; i < contacts_.size(); ++i) {
+    Contact& contact = contacts_[i];
     contact.accepted = false;
     contact.reason = HighlightStatus::kInconsistent;
     const auto hit = caster.Intersect(contact.origin, contact.direction);
@@ -76,7 +83,10 @@ std::vector<double> HighlightContacts::LayOn(const RayCaster& caster, const Leve
     }
     if (contact.prior_depth > 0) motion.push_back(std::abs(hit->t - contact.prior_depth));
     contact.prior_depth = hit->t;
-    if (reliable_normals) contact.surface_normal = field.Gradient(hit->position).normalized();
+    const Eigen::Vector3d normal = field.Gradient(hit->position).normalized();
+    if (reliable_normals) contact.surface_normal = normal;
+    const double reach = kTurnVoxels * field.voxel_size();
+    curvature_[i] = LargestTurn(field, hit->position, normal, reach) / (2 * reach);
     if (contact.depth == 0) contact.depth = hit->t;
     contact.accepted = Incidence(contact, lights_[contact.light]) < max_incidence;
     num_on_surface_ += contact.accepted;
@@ -129,7 +139,8 @@ void HighlightContacts::AddLobes(std::vector<OrientedPoint>& oriented) const {
 
 std::vector<OrientedPoint> HighlightContacts::Oriented() const {
   std::vector<OrientedPoint> oriented;
-  for (const Contact& contact : contacts_) {
+  for (size_t i = 0; i < contacts_.size(); ++i) {
+    const Contact& contact = contacts_[i];
     if (!contact.accepted) continue;
     OrientedPoint p;
     p.position = contact.SurfacePosition();
@@ -137,7 +148,8 @@ std::vector<OrientedPoint> HighlightContacts::Oriented() const {
     p.normal = ContactNormal(contact, lights_[contact.light]);
     const double facing = std::abs(contact.direction.dot(p.normal));
     p.sigma_position = std::clamp(kBundleCaution * contact.sigma_depth * facing, kLeastBundleSigma, 0.03);
-    p.sigma_normal = contact.sigma_normal;
+    p.sigma_normal =
+        std::hypot(contact.sigma_normal, kPlaceShare * std::abs(contact.prior_depth - contact.depth) * curvature_[i]);
     p.light = contact.light;
     p.sigma_light = 0.5 * DirectionSigma(lights_[contact.light], contact);
     oriented.push_back(p);

@@ -49,6 +49,7 @@ class HighlightContacts {
   const bool use_lobes_;
   int num_on_surface_ = 0;
   std::vector<uint8_t> misfit_;             // a contact: was left out for its size
+  std::vector<double> curvature_;           // of the surface at a contact, the largest
   std::vector<std::optional<Lobe>> lobes_;  // a contact: its blob on the current surface
   double lobe_width_ = 0;                   // radians, the median
 };

@@ -1,12 +1,12 @@
 #include "refine/thickness.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/parallel.h"
 #include "geometry/ray_caster.h"
+#include "refine/turn.h"
 
 namespace glint {
 namespace {
@@ -14,19 +14,9 @@ namespace {
 constexpr double kShare = 0.02;
 constexpr double kOffsetRel = 1e-4;  // of the diagonal: rays start this far inside
 constexpr size_t kMostSamples = 20000;
-constexpr double kSharpVoxels = 1.5, kSharpCosine = 0.5;
+constexpr double kSharpVoxels = 1.5, kSharpTurn = M_PI / 3;
 constexpr double kWallVoxels = 6;
 constexpr double kReachVoxels = 3;
-
-bool Sharp(const LevelSet& field, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
-  const double step = kSharpVoxels * field.voxel_size();
-  const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
-  const std::array<Eigen::Vector3d, 4> ways = {u, v, (u + v).normalized(), (u - v).normalized()};
-  return std::any_of(ways.begin(), ways.end(), [&](const Eigen::Vector3d& way) {
-    const Eigen::Vector3d a = field.Gradient(x + step * way), b = field.Gradient(x - step * way);
-    return a.dot(b) < kSharpCosine * a.norm() * b.norm();
-  });
-}
 
 }  // namespace
 
@@ -71,7 +61,8 @@ Unresolved::Unresolved(const TriangleMesh& surface, const LevelSet& field, const
       return;
     }
     const Eigen::Vector3d normal = gradient.normalized();
-    unresolved[v] = caster.Intersect(x - inside * normal, -normal, 0, wall) || Sharp(field, x, normal);
+    unresolved[v] = caster.Intersect(x - inside * normal, -normal, 0, wall) ||
+                    LargestTurn(field, x, normal, kSharpVoxels * field.voxel_size()) > kSharpTurn;
   });
   for (size_t v = 0; v < unresolved.size(); ++v)
     if (unresolved[v]) positions_.push_back(surface.vertices[v]);
