@@ -28,8 +28,7 @@ constexpr double kBundleCaution = 3;
 constexpr double kLeastBundleSigma = 0.002;
 // A normal holds where the bundle has its contact and is imposed where its ray meets the surface. So far as these
 // differ, and the surface turns sharply from the one to the other (a lip), it says less.
-constexpr double kPlaceShare = 1;  // standard deviation, of the way between the two
-constexpr double kGentle = 20;     // curvature, 1 / diagonal: what turns no faster is no lip
+constexpr double kGentle = 20;  // curvature, 1 / diagonal: what turns no faster is no lip
 constexpr double kTurnVoxels = 1.5;
 
 // Standard deviation of the direction to the light at a contact, radians.
@@ -150,8 +149,7 @@ std::vector<OrientedPoint> HighlightContacts::Oriented() const {
     const double facing = std::abs(contact.direction.dot(p.normal));
     p.sigma_position = std::clamp(kBundleCaution * contact.sigma_depth * facing, kLeastBundleSigma, 0.03);
     const double sharper = std::max(0.0, curvature_[i] - kGentle);
-    p.sigma_normal =
-        std::max(contact.sigma_normal, kPlaceShare * std::abs(contact.prior_depth - contact.depth) * sharper);
+    p.sigma_normal = std::max(contact.sigma_normal, std::abs(contact.prior_depth - contact.depth) * sharper);
     p.light = contact.light;
     p.sigma_light = 0.5 * DirectionSigma(lights_[contact.light], contact);
     oriented.push_back(p);

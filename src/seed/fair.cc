@@ -35,7 +35,6 @@ constexpr double kStiffStart = 2.5;  // times the smoothing asked for
 constexpr double kMaxGrowth =
     1.5;  // times the sparse surface's size: more is a bend that runs away where nothing holds
 constexpr size_t kGrain = 256;
-constexpr int kFacesAround = 64;
 constexpr double kTrustedRange = 4;  // usual distances: farther attachments lose most of their weight
 
 std::vector<Attachment> Leading(const std::vector<Attachment>& attachments) {
@@ -64,78 +63,17 @@ std::vector<Eigen::Vector3d> VertexNormals(const TriangleMesh& mesh) {
   return normals;
 }
 
-struct Foot {
-  Eigen::Vector3i face;
-  Eigen::Vector3d weights;
-  double distance;
-};
-
-Foot FootAt(const TriangleMesh& mesh, int face, const TrianglePoint& at) {
-  const Eigen::Vector3i& f = mesh.faces[face];
-  return {f, Barycentric(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], at.point),
-          std::sqrt(at.squared_distance)};
-}
-
-// Closest points on the side of the surface that faces `outward`, as far as there is one nearby.
-class FacingPoints {
- public:
-  explicit FacingPoints(const TriangleMesh& mesh) : mesh_(mesh), middles_(Middles(mesh)), index_(middles_) {}
-
-  std::optional<Foot> Find(const Eigen::Vector3d& x, const Eigen::Vector3d& outward) const {
-    std::optional<std::pair<TrianglePoint, int>> best;
-    for (const int face : index_.Nearest(x, kFacesAround)) {
-      const Eigen::Vector3i& f = mesh_.faces[face];
-      const Eigen::Vector3d &a = mesh_.vertices[f[0]], &b = mesh_.vertices[f[1]], &c = mesh_.vertices[f[2]];
-      if ((b - a).cross(c - a).dot(outward) <= 0) continue;
-      const TrianglePoint at = ClosestOnTriangle(a, b, c, x);
-      if (!best || at.squared_distance < best->first.squared_distance) best = {at, face};
-    }
-    if (!best) return std::nullopt;
-    return FootAt(mesh_, best->second, best->first);
-  }
-
- private:
-  static std::vector<Eigen::Vector3d> Middles(const TriangleMesh& mesh) {
-    std::vector<Eigen::Vector3d> middles;
-    for (const Eigen::Vector3i& f : mesh.faces)
-      middles.push_back((mesh.vertices[f[0]] + mesh.vertices[f[1]] + mesh.vertices[f[2]]) / 3);
-    return middles;
-  }
-
-  const TriangleMesh& mesh_;
-  const std::vector<Eigen::Vector3d> middles_;
-  const PointIndex index_;
-};
-
-std::vector<Foot> FeetOf(const std::vector<Attachment>& attachments, const TriangleMesh& mesh) {
-  const ClosestPointQuery query(mesh);
-  std::optional<FacingPoints> facing;
-  if (std::any_of(attachments.begin(), attachments.end(), [](const Attachment& a) { return !a.outward.isZero(); }))
-    facing.emplace(mesh);
-  std::vector<Foot> feet(attachments.size());
-  ParallelFor(feet.size(), kGrain, [&](size_t i) {
-    const Attachment& a = attachments[i];
-    if (!a.outward.isZero())
-      if (const std::optional<Foot> foot = facing->Find(a.position, a.outward)) {
-        feet[i] = *foot;
-        return;
-      }
-    const MeshPoint at = *query.Find(a.position);
-    feet[i] = FootAt(mesh, at.face, at);
-  });
-  return feet;
-}
-
 // The share of its weight that each keeps (Geman–McClure against the usual distance).
-std::vector<double> Trust(const std::vector<Attachment>& attachments, const std::vector<Foot>& feet, double min_sigma) {
+std::vector<double> Trust(const std::vector<Attachment>& attachments, const std::vector<AttachedPoint>& attached,
+                          double min_sigma) {
   std::vector<double> distances;
-  for (size_t i = 0; i < feet.size(); ++i)
-    if (!attachments[i].extra) distances.push_back(feet[i].distance);
+  for (size_t i = 0; i < attached.size(); ++i)
+    if (!attachments[i].extra) distances.push_back(attached[i].distance);
   const double typical = distances.empty() ? min_sigma : std::max(1.4826 * Median(distances), min_sigma);
   std::vector<double> trust;
-  for (size_t i = 0; i < feet.size(); ++i) {
+  for (size_t i = 0; i < attached.size(); ++i) {
     const double range = kTrustedRange * attachments[i].credit * std::max(typical, attachments[i].sigma);
-    const double r = feet[i].distance / range;
+    const double r = attached[i].distance / range;
     trust.push_back(1 / Square(1 + r * r));
   }
   return trust;
@@ -143,11 +81,12 @@ std::vector<double> Trust(const std::vector<Attachment>& attachments, const std:
 
 // How well the surface is known at its vertices, 0 … 1: the density of the attachments, spread over `length`, against
 // `density` (attachments an area).
-std::optional<Eigen::VectorXd> Knowledge(const std::vector<Foot>& feet, const std::vector<double>& trust,
+std::optional<Eigen::VectorXd> Knowledge(const std::vector<AttachedPoint>& attached, const std::vector<double>& trust,
                                          const EvenLaplacian& laplacian, double length, double density) {
   Eigen::VectorXd deposits = Eigen::VectorXd::Zero(laplacian.stiffness.rows());
-  for (size_t i = 0; i < feet.size(); ++i)
-    for (int k = 0; k < 3; ++k) deposits[feet[i].face[k]] += trust[i] * feet[i].weights[k] / (laplacian.area * density);
+  for (size_t i = 0; i < attached.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      deposits[attached[i].face[k]] += trust[i] * attached[i].weights[k] / (laplacian.area * density);
   SparseMatrix spread = laplacian.stiffness * (length * length / laplacian.area);
   for (int v = 0; v < deposits.size(); ++v) spread.coeffRef(v, v) += 1;
   const std::optional<Eigen::MatrixXd> known = SolvePositive(spread, deposits);
@@ -189,11 +128,11 @@ struct Springs {
     entries.emplace_back(vertex, vertex, weight);
     right.row(vertex) += weight * at.transpose();
   }
-  void Attach(const Foot& foot, const Eigen::Vector3d& at, double weight) {
+  void Attach(const AttachedPoint& point, const Eigen::Vector3d& at, double weight) {
     for (int j = 0; j < 3; ++j) {
-      right.row(foot.face[j]) += weight * foot.weights[j] * at.transpose();
+      right.row(point.face[j]) += weight * point.weights[j] * at.transpose();
       for (int k = 0; k < 3; ++k)
-        entries.emplace_back(foot.face[j], foot.face[k], weight * foot.weights[j] * foot.weights[k]);
+        entries.emplace_back(point.face[j], point.face[k], weight * point.weights[j] * point.weights[k]);
     }
   }
 };
@@ -264,9 +203,9 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
   for (int round = 0; round < options.rounds; ++round) {
     const double area = SurfaceArea(out.mesh);
     const EvenLaplacian laplacian = MakeEvenLaplacian(out.mesh);
-    const std::vector<Foot> feet = FeetOf(attachments, out.mesh);
+    const std::vector<AttachedPoint> attached = AttachTo(out.mesh, attachments);
     // The first distances are those to flat facets: large also for good points.
-    if (round > 0) out.trust = Trust(attachments, feet, min_sigma);
+    if (round > 0) out.trust = Trust(attachments, attached, min_sigma);
     std::vector<double> weights, leading_weights;
     for (size_t i = 0; i < attachments.size(); ++i) {
       weights.push_back(out.trust[i] / Square(std::max(attachments[i].sigma, min_sigma)));
@@ -283,11 +222,11 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     const int n = static_cast<int>(out.mesh.vertices.size());
     Springs springs(n);
     HoldUnseen(out.mesh, raw, context, spring * density * laplacian.area, options.stay, springs);
-    for (size_t i = 0; i < feet.size(); ++i) springs.Attach(feet[i], attachments[i].position, weights[i]);
+    for (size_t i = 0; i < attached.size(); ++i) springs.Attach(attached[i], attachments[i].position, weights[i]);
     if (round > 0) {
       const double flatness = leading.size() < attachments.size() ? kFlatness : 0;
       const double length = kRestLength / std::sqrt(all / area);
-      const std::optional<Eigen::VectorXd> known = Knowledge(feet, out.trust, laplacian, length, all / area);
+      const std::optional<Eigen::VectorXd> known = Knowledge(attached, out.trust, laplacian, length, all / area);
       if (!known) return out;  // as below
       const std::vector<Eigen::Vector3d> normals = VertexNormals(out.mesh);
       for (const WallPlace& place : WallPlaces(out.mesh, normals, laplacian, *known, length, diagonal))
@@ -307,7 +246,7 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
     out.mesh = std::move(next);
     if (round + 1 < options.rounds) out.mesh = RemeshEvenly(out.mesh, options.edge_rel * diagonal, 1);
   }
-  out.trust = Trust(attachments, FeetOf(attachments, out.mesh), min_sigma);
+  out.trust = Trust(attachments, AttachTo(out.mesh, attachments), min_sigma);
   return out;
 }
 

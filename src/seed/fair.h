@@ -8,6 +8,7 @@
 
 #include "core/options.h"
 #include "geometry/triangle_mesh.h"
+#include "seed/attachment.h"
 
 namespace glint {
 
@@ -18,18 +19,6 @@ struct FairOptions {
   int rounds = 6;
 
   void Visit(OptionVisitor& v);
-};
-
-// A place that the surface should pass, with its standard deviation (world units). `credit` widens (> 1) or narrows
-// the range in which it is believed against its neighbours.
-struct Attachment {
-  Eigen::Vector3d position;
-  double sigma;
-  double credit = 1;
-  int point = -1;      // the caller's name for it
-  bool extra = false;  // no sparse point: how far the surface may bend is not for it to say
-  // Out of the object, where that is known: the other side of a thin wall may be closer. Zero: not known.
-  Eigen::Vector3d outward = Eigen::Vector3d::Zero();
 };
 
 // What is known besides the points.
@@ -52,7 +41,8 @@ struct FairResult {
 // normal of the round before with its curvature evened out, and continued into what no point holds: a plate bent by
 // nature, which spheres (and, between points, any body of slowly changing curvature) cost nothing; flat facets cut
 // 2–3 % off a convex body. With a ground, what is unseen below closes itself by that curvature, down to the ground,
-// instead of staying with the sparse surface. The rounds go from stiff to soft, so that points which disagree with
+// instead of staying with the sparse surface. A thin wall whose one side no point holds is as thick as beside there
+// (seed/wall_thickness). The rounds go from stiff to soft, so that points which disagree with
 // their neighbourhood lose their weight before the surface could bend to them. The mesh must be closed and manifold;
 // topology is kept.
 FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachment>& attachments,

@@ -21,7 +21,7 @@ namespace {
 constexpr int kRounds = 3;  // of surface, fairing, and leaving out the points that it disbelieves
 constexpr int kMaxStiffenings = 4;
 constexpr double kStiffer = 1.6;
-// Of a wall's stiffness, tried first: two sheets that are closer to each other than their points pull each other
+// Of the stiffness, for a wall: two sheets that are closer to each other than their points pull each other
 // through.
 constexpr double kSofter = 0.5;
 // Edges of the smooth seed: about as fine as it is, and others where two sheets touch on those voxels.
