@@ -228,9 +228,11 @@ FairResult FairThroughPoints(const TriangleMesh& mesh, const std::vector<Attachm
       const double length = kRestLength / std::sqrt(all / area);
       const std::optional<Eigen::VectorXd> known = Knowledge(attached, out.trust, laplacian, length, all / area);
       if (!known) return out;  // as below
-      const std::vector<Eigen::Vector3d> normals = VertexNormals(out.mesh);
-      for (const WallPlace& place : WallPlaces(out.mesh, normals, laplacian, *known, length, diagonal))
-        springs.Hold(place.vertex, place.position, density * laplacian.area / Square(std::max(place.sigma, min_sigma)));
+      if (context.even_walls)
+        for (const WallPlace& place :
+             WallPlaces(out.mesh, VertexNormals(out.mesh), laplacian, *known, length, diagonal))
+          springs.Hold(place.vertex, place.position,
+                       density * laplacian.area / Square(std::max(place.sigma, min_sigma)));
       const std::optional<Eigen::MatrixX3d> rest = RestCurvature(out.mesh, laplacian, length, *known, flatness);
       if (!rest) return out;
       springs.right += lambda / laplacian.area * (laplacian.stiffness * *rest);

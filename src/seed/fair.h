@@ -25,6 +25,7 @@ struct FairOptions {
 struct FairContext {
   std::vector<Eigen::Vector3d> eyes;                        // of the cameras
   std::optional<Eigen::Hyperplane<double, 3>> ground = {};  // the object is on its positive side
+  bool even_walls = true;  // not if backs were put behind the points: those say nothing of how thick a wall is
 };
 
 struct FairResult {

@@ -164,6 +164,7 @@ Shape MakeShape(const Scene& scene, PointReliability& reliability, ObjectChoice&
     shape.sparse = MakeSparseSurface(scene, reliability, choice, cut, rim);
     progress.ThrowIfCancelled();
     if (shape.sparse.mesh.empty()) return {};
+    context.even_walls = !shape.sparse.is_wall;
     const std::vector<Attachment> attachments = Attachments(scene, shape.sparse, reliability, rim);
     FairResult fair = FairWithoutFolds(shape.sparse, attachments, context, fair_options, shape.fairing);
     shape.smooth = std::move(fair.mesh);
