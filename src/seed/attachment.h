@@ -16,8 +16,6 @@ struct Attachment {
   double credit = 1;
   int point = -1;      // the caller's name for it
   bool extra = false;  // no sparse point: how far the surface may bend is not for it to say
-  // Out of the object, where that is known: the other side of a thin wall may be closer. Zero: not known.
-  Eigen::Vector3d outward = Eigen::Vector3d::Zero();
 };
 
 // Where an attachment holds the surface: a point of a face by its barycentric weights, `distance` (world units) away.

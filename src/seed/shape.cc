@@ -8,7 +8,6 @@
 
 #include "geometry/components.h"
 #include "geometry/mesh_checks.h"
-#include "geometry/pseudo_normals.h"
 #include "geometry/self_intersections.h"
 #include "sdf/extract_mesh.h"
 #include "sdf/mesh_to_level_set.h"
@@ -41,16 +40,12 @@ Attachment AttachmentOf(const Scene& scene, const PointReliability& reliability,
 std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& surface,
                                     const PointReliability& reliability, const RimEvidence& rim) {
   const double hidden_sigma = kHiddenSigmaRel * Diagonal(surface.mesh);
-  // The other side of a wall may be closer than the one that a place is on.
-  std::vector<Eigen::Vector3d> outward(surface.mesh.vertices.size(), Eigen::Vector3d::Zero());
-  if (surface.is_wall) outward = ComputePseudoNormals(surface.mesh, BuildEdgeTopology(surface.mesh)).vertex;
   std::vector<Attachment> attachments;
   for (size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
     if (surface.scene_point[v] == kMiddleVertex) continue;
     Attachment a{surface.mesh.vertices[v], hidden_sigma, 1, surface.scene_point[v]};
     if (const int point = surface.scene_point[v]; point >= 0) {
       a = AttachmentOf(scene, reliability, point);
-      if (surface.is_wall) outward[v] = TowardViews(scene, scene.points[point]);
     } else if (point == kBackVertex) {
       if (!rim.points.empty()) a.sigma = kBackSigmaRel * Diagonal(surface.mesh);
       a.extra = true;
@@ -58,7 +53,6 @@ std::vector<Attachment> Attachments(const Scene& scene, const SparseSurface& sur
       a.sigma = rim.points[kFirstRimVertex - point].sigma;
       a.extra = true;
     }
-    a.outward = outward[v];
     attachments.push_back(a);
   }
   for (const int point : surface.beside) attachments.push_back(AttachmentOf(scene, reliability, point));
