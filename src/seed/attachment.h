@@ -25,8 +25,7 @@ struct AttachedPoint {
   double distance;
 };
 
-// The closest point of the mesh to each; of those that know what is outward, on a side that faces there, if one is
-// near.
+// The closest point of the mesh to each.
 std::vector<AttachedPoint> AttachTo(const TriangleMesh& mesh, const std::vector<Attachment>& attachments);
 
 }  // namespace glint
